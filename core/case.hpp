@@ -1,0 +1,128 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/material.hpp"
+
+namespace layerloop {
+
+// A case, checked and in SI. Every member is filled by one row of the schema table (core/case_schema.cpp), which holds
+// its key, unit, range, default and sentence; a member without a row here would never be set.
+
+enum class SizeBasis { number, volume };
+enum class Cohesion { none, sjkr2 };
+enum class WallCohesionArea { liggghts, eq6 };
+enum class CoulombOn { repulsive, total };
+enum class BladeCollision { stop, report };
+enum class SpotDefinition { one_over_e2, d4sigma, fwhm };
+enum class ScanKind { track, hatch };
+enum class HeatSolver { explicit_steps, implicit_steps, automatic };
+
+struct PowderSettings {
+  std::string material;
+  SizeBasis basis = SizeBasis::number;
+  std::vector<double> diameters;  ///< [m]
+  std::vector<double> fractions;  ///< sum 1, by `basis`
+  std::int64_t particles = 0;     ///< grains fed before the first layer
+};
+
+struct ContactSettings {
+  double youngs_modulus = 0;  ///< [Pa]
+  double poisson_ratio = 0;
+  double restitution = 0;
+  double sliding_friction = 0;
+  double rolling_friction = 0;
+  Cohesion cohesion = Cohesion::sjkr2;
+  double cohesion_energy_density = 0;  ///< [J/m^3]
+  double wall_friction = 0;
+  WallCohesionArea wall_cohesion_area = WallCohesionArea::liggghts;
+  CoulombOn coulomb_on = CoulombOn::repulsive;
+  double time_step_fraction = 0;  ///< of the Rayleigh time of the smallest grain
+};
+
+/// x = 0 is where the accumulation zone begins and z = 0 the level of the platforms.
+struct MachineSettings {
+  double layer_thickness = 0;
+  double recoating_speed = 0;
+  double dose_factor = 0;           ///< grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %
+  double accumulation_length = 0, accumulation_depth = 0, gap_length = 0, deposition_length = 0;
+  double width = 0;                 ///< periodic, across the blade
+  double blade_width = 0, edge_radius = 0, blade_clearance = 0;
+  BladeCollision blade_collision = BladeCollision::stop;
+  std::optional<std::array<double, 2>> frozen_zone;  ///< x from, to: freeze and mesh this part of the bed instead of the laser
+
+  double deposition_begin() const { return accumulation_length + gap_length; }
+  double deposition_end() const { return deposition_begin() + deposition_length; }
+};
+
+struct LaserSettings {
+  double power = 0;          ///< [W]
+  double wavelength = 0;     ///< [m]
+  double spot_diameter = 0;  ///< [m], by `spot_definition`
+  SpotDefinition spot_definition = SpotDefinition::one_over_e2;
+  std::optional<double> absorptivity;  ///< replaces the tracer
+
+  double spot_radius() const;  ///< 1/e2 radius w [m]: I = 2P/(pi w^2) exp(-2 r^2/w^2)
+};
+
+struct OpticsSettings {
+  std::optional<std::array<double, 2>> refractive_index;  ///< [n, k], replaces the material's
+  std::int64_t rays = 0;                                  ///< per beam position
+  double position_spacing = 0;                            ///< between the beam positions that are traced [m]
+};
+
+struct ScanSettings {
+  ScanKind kind = ScanKind::hatch;
+  double scan_speed = 0;
+  double track_length = 0;
+  std::int64_t tracks = 0;
+  double hatch_spacing = 0;
+  double rotation = 0;  ///< of the hatch from layer to layer [rad]; 0 or multiples of pi
+  double dwell = 0;     ///< laser off between tracks [s]
+};
+
+struct HeatSettings {
+  double cell_size = 0;
+  double substrate_depth = 0;  ///< of the plate that the grid holds [m]
+  double margin = 0;           ///< of the grid around the scanned patch [m]
+  double ambient_temperature = 0;
+  HeatSolver solver = HeatSolver::automatic;
+  double powder_contact_conductivity = 0;  ///< across faces between different grains [W/(m K)]: gas and point contacts
+  std::string pool_isotherm;               ///< "liquidus" or "solidus"
+};
+
+struct RunSettings {
+  std::int64_t layers = 0;
+  bool checkpoint = true;
+  bool unsafe_time_step = false;
+};
+
+/// One `[effects.NAME]` table.
+struct EffectSettings {
+  bool enabled = false;
+  double strength = 1;
+};
+
+struct Case {
+  std::string name;
+  std::uint64_t seed = 0;
+  std::string preset;
+  PowderSettings powder;
+  ContactSettings contact;
+  MachineSettings machine;
+  LaserSettings laser;
+  OpticsSettings optics;
+  ScanSettings scan;
+  HeatSettings heat;
+  RunSettings run;
+  std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
+  Material material;                              ///< the powder's, overrides applied; substrate and part are the same metal
+
+  bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
+};
+
+}  // namespace layerloop

@@ -1,0 +1,7 @@
+#pragma once
+#include <Eigen/Core>
+
+namespace layerloop {
+/// Position [m], velocity [m/s] or direction in the machine frame: x along the recoating direction, z up.
+using Vec3 = Eigen::Vector3d;
+}  // namespace layerloop
