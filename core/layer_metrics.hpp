@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/height_map.hpp"
+#include "core/area_map.hpp"
 
 namespace layerloop {
 
