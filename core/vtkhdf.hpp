@@ -24,6 +24,10 @@ struct Field {
 void write_bed_group(Hdf5Writer& file, PowderBed const& bed);
 PowderBed read_bed_group(Hdf5Reader const& file);
 
+/// Adds group /substrate: vertices and triangles.
+void write_surface_group(Hdf5Writer& file, TriangleSurface const& surface);
+TriangleSurface read_surface_group(Hdf5Reader const& file);
+
 /// bed_NNNN.h5: grains as VTK vertices with their radius, triangles of the substrate as VTK triangles; fields are per grain
 /// (0 on triangle corners). UnstructuredGrid.
 void write_bed_file(std::filesystem::path const& path, PowderBed const& bed, TriangleSurface const& substrate, std::span<Field const> fields);
