@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <filesystem>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -20,8 +20,8 @@ struct Ledger {
   std::int64_t particles_fed = 0, particles_bed = 0, particles_overflow = 0, particles_melted = 0, particles_lost = 0;
   std::int64_t particles_trapped = 0;  ///< of the melted: stayed whole inside the part
   double power_incident = 0, power_absorbed = 0, power_escaped = 0, power_residual = 0;  ///< mean over the exposure [W]
-  double ray_energy_relative_error = 0;  ///< worst beam position
-  double power_rescaling = 0;            ///< factor - 1 that was applied to the absorbed power
+  double ray_energy_relative_error = 0;                                                  ///< worst beam position
+  double power_rescaling = 0;  ///< factor - 1 that was applied to the absorbed power
   double heat_in = 0, heat_stored = 0, heat_out = 0, heat_energy_relative_error = 0;  ///< [J]
   double surface_height_correction = 0;  ///< mean change of the surface by levelling and resettling [m]
 };
@@ -37,9 +37,10 @@ struct MeltSection {
 /// What became of the melted grains of one layer.
 struct Consolidation {
   std::int64_t grains_melted = 0, grains_trapped = 0, grains_moved = 0;
-  double melted_mass = 0;            ///< that joined the solid in this layer, trapped grains included [kg]
-  double melted_cell_mass = 0;       ///< powder mass in melted cells: what the half-or-more rule rounds [kg]
-  double largest_displacement = 0;   ///< of a grain that was moved clear of the new surface [m]
+  double melted_mass = 0;                    ///< that joined the solid in this layer, trapped grains included [kg]
+  double melted_cell_mass = 0;               ///< powder mass in melted cells: what the half-or-more rule rounds [kg]
+  double surface_height_correction = 0;      ///< mean change of the melt's surface by levelling [m]
+  double largest_displacement = 0;           ///< of a grain that was moved clear of the new surface [m]
   double mesh_volume = 0, field_volume = 0;  ///< plate and part: enclosed by the mesh, and held by the field [m^3]
   std::int64_t triangles = 0;
   double part_relative_density = 0;  ///< metal / (metal + enclosed voids) of the part so far, plate left out
@@ -58,7 +59,7 @@ struct LayerRecord {
   PoolSize pool, pool_u_num;
   std::vector<MeltSection> sections;
   Consolidation consolidation;
-  HeightMap part_surface;   ///< of the solid (plate and part) after consolidation
+  HeightMap part_surface;                            ///< of the solid (plate and part) after consolidation
   std::vector<std::array<std::string, 2>> pictures;  ///< file name in the output folder, caption
 };
 
@@ -72,10 +73,21 @@ struct RunRecord {
   WallTime wall_time;
 };
 
+/// What explains the figures of a run.
+struct ReportExtras {
+  std::string version;                             ///< of the program
+  std::map<std::string, std::string> definitions;  ///< quantity -> sentence, for the quantities of a spread layer
+};
+
+/// Lossless: every number comes back bit for bit (not a number, infinity: as text). \throws FileError damaged
 void to_json(nlohmann::json& json, RunRecord const& record);
 void from_json(nlohmann::json const& json, RunRecord& record);
 
-/// summary.json as the contract names it: scalars with `_u_num`, definitions, ledger, wall time; no maps.
-nlohmann::json summary(Case const& checked, RunRecord const& record);
+/// A sentence for every quantity of the summary: those of `extras`, and those of light, heat and part.
+std::map<std::string, std::string> definitions(ReportExtras const& extras);
+
+/// summary.json as the contract names it: scalars with `_u_num`, definitions, ledger, wall time; no maps. Quantities of
+/// light, heat and part are left out where a zone was frozen instead of melted.
+nlohmann::json summary(Case const& checked, RunRecord const& record, ReportExtras const& extras);
 
 }  // namespace layerloop::coupling

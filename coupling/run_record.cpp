@@ -1,0 +1,292 @@
+#include "coupling/run_record.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/error.hpp"
+
+namespace layerloop::coupling {
+namespace {
+
+using nlohmann::json;
+
+// One list of members for each structure, for reading and writing alike: `visit(name, member)`.
+template <class T, class Plain>
+concept Of = std::same_as<std::remove_const_t<T>, Plain>;
+
+template <class Visit>
+void members(Of<PoolSize> auto& pool, Visit&& visit) {
+  visit("width", pool.width);
+  visit("depth", pool.depth);
+  visit("length", pool.length);
+}
+
+template <class Visit>
+void members(Of<AreaMap> auto& map, Visit&& visit) {
+  visit("x0", map.x0);
+  visit("y0", map.y0);
+  visit("spacing", map.spacing);
+  visit("nx", map.nx);
+  visit("ny", map.ny);
+  visit("values", map.values);
+}
+
+template <class Visit>
+void members(Of<LayerBin> auto& bin, Visit&& visit) {
+  visit("x", bin.x);
+  visit("relative_density", bin.relative_density);
+  visit("effective_thickness", bin.effective_thickness);
+  visit("mean_diameter", bin.mean_diameter);
+  visit("grains", bin.grains);
+}
+
+template <class Visit>
+void members(Of<LayerMetrics> auto& metrics, Visit&& visit) {
+  visit("effective_thickness", metrics.effective_thickness);
+  visit("real_effective_thickness", metrics.real_effective_thickness);
+  visit("void_layer", metrics.void_layer);
+  visit("volume_fraction_nominal", metrics.volume_fraction_nominal);
+  visit("volume_fraction_real", metrics.volume_fraction_real);
+  visit("surface_coverage", metrics.surface_coverage);
+  visit("roughness_sa", metrics.roughness_sa);
+  visit("d10", metrics.d10);
+  visit("d50", metrics.d50);
+  visit("d90", metrics.d90);
+  visit("bins", metrics.bins);
+  visit("surface", metrics.surface);
+}
+
+template <class Visit>
+void members(Of<MeltSection> auto& section, Visit&& visit) {
+  visit("x", section.x);
+  visit("y0", section.y0);
+  visit("z0", section.z0);
+  visit("cell", section.cell);
+  visit("ny", section.ny);
+  visit("nz", section.nz);
+  visit("peak_temperature", section.peak_temperature);
+  visit("state", section.state);
+}
+
+template <class Visit>
+void members(Of<Consolidation> auto& part, Visit&& visit) {
+  visit("grains_melted", part.grains_melted);
+  visit("grains_trapped", part.grains_trapped);
+  visit("grains_moved", part.grains_moved);
+  visit("melted_mass", part.melted_mass);
+  visit("melted_cell_mass", part.melted_cell_mass);
+  visit("largest_displacement", part.largest_displacement);
+  visit("mesh_volume", part.mesh_volume);
+  visit("field_volume", part.field_volume);
+  visit("triangles", part.triangles);
+  visit("part_relative_density", part.part_relative_density);
+}
+
+template <class Visit>
+void members(Of<LayerRecord> auto& layer, Visit&& visit) {
+  visit("layer", layer.layer);
+  visit("grains_in_layer", layer.grains_in_layer);
+  visit("metrics", layer.metrics);
+  visit("blade_note", layer.blade_note);
+  visit("absorptivity", layer.absorptivity);
+  visit("absorptivity_standard_error", layer.absorptivity_standard_error);
+  visit("mean_bounces", layer.mean_bounces);
+  visit("rays", layer.rays);
+  visit("absorbed_energy", layer.absorbed_energy);
+  visit("peak_temperature", layer.peak_temperature);
+  visit("pool", layer.pool);
+  visit("pool_u_num", layer.pool_u_num);
+  visit("sections", layer.sections);
+  visit("consolidation", layer.consolidation);
+  visit("part_surface", layer.part_surface);
+  visit("pictures", layer.pictures);
+}
+
+template <class Visit>
+void members(Of<Ledger> auto& ledger, Visit&& visit) {
+  visit("mass_fed", ledger.mass_fed);
+  visit("mass_bed", ledger.mass_bed);
+  visit("mass_overflow", ledger.mass_overflow);
+  visit("mass_melted", ledger.mass_melted);
+  visit("mass_evaporated", ledger.mass_evaporated);
+  visit("mass_lost", ledger.mass_lost);
+  visit("mass_relative_error", ledger.mass_relative_error);
+  visit("particles_fed", ledger.particles_fed);
+  visit("particles_bed", ledger.particles_bed);
+  visit("particles_overflow", ledger.particles_overflow);
+  visit("particles_melted", ledger.particles_melted);
+  visit("particles_lost", ledger.particles_lost);
+  visit("particles_trapped", ledger.particles_trapped);
+  visit("power_incident", ledger.power_incident);
+  visit("power_absorbed", ledger.power_absorbed);
+  visit("power_escaped", ledger.power_escaped);
+  visit("power_residual", ledger.power_residual);
+  visit("ray_energy_relative_error", ledger.ray_energy_relative_error);
+  visit("power_rescaling", ledger.power_rescaling);
+  visit("heat_in", ledger.heat_in);
+  visit("heat_stored", ledger.heat_stored);
+  visit("heat_out", ledger.heat_out);
+  visit("heat_energy_relative_error", ledger.heat_energy_relative_error);
+  visit("surface_height_correction", ledger.surface_height_correction);
+}
+
+template <class Visit>
+void members(Of<WallTime> auto& time, Visit&& visit) {
+  visit("dem", time.dem);
+  visit("rays", time.rays);
+  visit("heat", time.heat);
+  visit("mesh", time.mesh);
+  visit("io", time.io);
+  visit("total", time.total);
+}
+
+template <class Visit>
+void members(Of<RunRecord> auto& record, Visit&& visit) {
+  visit("layers", record.layers);
+  visit("ledger", record.ledger);
+  visit("wall_time", record.wall_time);
+}
+
+template <class T>
+concept Array = requires(T const& values) {
+  typename T::allocator_type;
+}
+&&!std::same_as<T, std::string>;
+template <class T>
+concept JsonKnows = std::integral<T> || std::same_as<T, std::string> || std::same_as<T, std::array<std::string, 2>>;
+
+// nlohmann::json writes the shortest decimals that read back to the same double, but has no word for what is not
+// finite.
+json encode_number(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+}
+
+double decode_number(json const& from) {
+  if (from.is_number()) return from.get<double>();
+  std::string const word = from.get<std::string>();
+  double const infinity = std::numeric_limits<double>::infinity();
+  return word == "inf" ? infinity : word == "-inf" ? -infinity : std::numeric_limits<double>::quiet_NaN();
+}
+
+template <class T>
+json encode(T const& value) {
+  if constexpr (std::floating_point<T>) {
+    return encode_number(value);
+  } else if constexpr (JsonKnows<T>) {
+    return value;
+  } else if constexpr (Array<T>) {
+    json array = json::array();
+    for (auto const& element : value) array.push_back(encode(element));
+    return array;
+  } else {
+    json object = json::object();
+    members(value, [&](char const* name, auto const& member) { object[name] = encode(member); });
+    return object;
+  }
+}
+
+template <class T>
+void decode(json const& from, T& value) {
+  if constexpr (std::floating_point<T>) {
+    value = static_cast<T>(decode_number(from));
+  } else if constexpr (JsonKnows<T>) {
+    from.get_to(value);
+  } else if constexpr (Array<T>) {
+    value.resize(from.get_ref<json::array_t const&>().size());
+    for (std::size_t i = 0; i < value.size(); ++i) decode(from[i], value[i]);
+  } else {
+    members(value, [&](char const* name, auto& member) { decode(from.at(name), member); });
+  }
+}
+
+void add_laser_keys(json& entry, LayerRecord const& layer) {
+  entry["absorptivity"] = layer.absorptivity;
+  entry["absorptivity_u_num"] = layer.absorptivity_standard_error;
+  entry["mean_bounces"] = layer.mean_bounces;
+  entry["rays"] = layer.rays;
+  entry["peak_temperature"] = layer.peak_temperature;
+  entry["pool"] = encode(layer.pool);
+  members(layer.pool_u_num, [&](std::string const& name, double value) { entry["pool"][name + "_u_num"] = value; });
+  entry["melted_mass"] = layer.consolidation.melted_mass;
+  // What lies between the mass of melted cells and the mass of whole grains is the rounding of the half-or-more rule.
+  entry["melted_mass_u_num"] = std::abs(layer.consolidation.melted_mass - layer.consolidation.melted_cell_mass);
+}
+
+json layer_summary(LayerRecord const& layer, bool laser) {
+  json entry = encode(layer.metrics);
+  entry.erase("bins");
+  entry.erase("surface");
+  entry["layer"] = layer.layer;
+  entry["grains_in_layer"] = layer.grains_in_layer;
+  if (!layer.blade_note.empty()) entry["blade_note"] = layer.blade_note;
+  if (laser) add_laser_keys(entry, layer);
+  Consolidation const& part = layer.consolidation;
+  entry["part_relative_density"] = part.part_relative_density;
+  entry["grains_melted"] = part.grains_melted;
+  entry["grains_trapped"] = part.grains_trapped;
+  entry["grains_moved"] = part.grains_moved;
+  return entry;
+}
+
+}  // namespace
+
+void to_json(json& to, RunRecord const& record) { to = encode(record); }
+
+void from_json(json const& from, RunRecord& record) {
+  try {
+    decode(from, record);
+  } catch (json::exception const& error) {
+    throw FileError(
+        fmt::format("the record of the run is damaged ({}); go back to an earlier checkpoint", error.what()));
+  }
+}
+
+std::map<std::string, std::string> definitions(ReportExtras const& extras) {
+  std::map<std::string, std::string> all{
+      {"absorptivity",
+       "absorbed over incident laser power, mean over the exposure of the layer, before any rescaling; light that "
+       "leaves "
+       "the scene after reflections is not absorbed"},
+      {"absorptivity_u_num", "standard error of the absorptivity from independent sets of rays"},
+      {"mean_bounces", "hits on a surface per ray"},
+      {"melted_mass",
+       "mass of the grains that had at least half of their volume in melted cells; they join the solid with their "
+       "whole mass"},
+      {"melted_mass_u_num",
+       "difference between that mass and the powder mass inside melted cells: what the half-or-more rule rounds"},
+      {"pool.width",
+       "largest width across the track at mid-track inside the isotherm of heat.pool_isotherm, mean over the tracks"},
+      {"pool.depth",
+       "depth of the same isotherm below the surface that the powder was spread on, at mid-track, mean over the "
+       "tracks"},
+      {"pool.length",
+       "largest extent along the track of what is above the isotherm at one instant, mean over the tracks"},
+      {"pool.*_u_num", "half a cell in each direction, combined with the scatter between cuts"},
+      {"peak_temperature", "highest temperature that any cell reached"},
+      {"part_relative_density", "metal over metal and enclosed voids of the part so far, the plate left out"},
+      {"grains_trapped", "melted by half or more, but enclosed in the part as whole grains"},
+      {"grains_moved", "grains that were moved clear of the new surface"},
+      {"surface_height_correction", "mean change of the surface by levelling of the melt and resettling of grains"},
+  };
+  for (auto const& [quantity, sentence] : extras.definitions) all[quantity] = sentence;
+  return all;
+}
+
+json summary(Case const& checked, RunRecord const& record, ReportExtras const& extras) {
+  bool const laser = !checked.machine.frozen_zone;
+  json all{{"verb", "run"}, {"case", checked.name}, {"seed", checked.seed}, {"version", extras.version}};
+  all["layers"] = json::array();
+  for (LayerRecord const& layer : record.layers) all["layers"].push_back(layer_summary(layer, laser));
+  all["ledger"] = encode(record.ledger);
+  all["wall_time"] = encode(record.wall_time);
+  all["definitions"] = definitions(extras);
+  return all;
+}
+
+}  // namespace layerloop::coupling
