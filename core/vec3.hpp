@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>  // cross products
 
 namespace layerloop {
 /// Position [m], velocity [m/s] or direction in the machine frame: x along the recoating direction, z up.
