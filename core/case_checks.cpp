@@ -1,0 +1,280 @@
+#include "core/case_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <numeric>
+
+#include "core/units.hpp"
+
+namespace layerloop {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::string length(double metres) { return format_quantity(metres, Dimension::length); }
+
+bool divides(double cell, double extent) {
+  double const cells = extent / cell;
+  return std::round(cells) >= 1 && std::abs(cells - std::round(cells)) < 1e-6 * cells;
+}
+
+/// One method a group of checks; `known` guards each against values that are wrong by themselves.
+class CaseChecks {
+ public:
+  CaseChecks(Case const& c, CaseOrigin const& origin) : c_(c), origin_(origin) {}
+
+  void run() const {
+    powder();
+    feed();
+    time_step();
+    machine();
+    frozen_zone();
+    material();
+    if (c_.machine.frozen_zone) return;
+    scan();
+    beam_on_bed();
+    heat_grid();
+    optics();
+  }
+
+ private:
+  bool known(std::initializer_list<char const*> keys) const {
+    return std::all_of(keys.begin(), keys.end(), [this](char const* key) { return origin_.sound(key); });
+  }
+
+  template <class... Values>
+  void report(char const* key, fmt::format_string<Values...> text, Values&&... values) const {
+    origin_.report(key, fmt::format("{} {}", key, fmt::format(text, std::forward<Values>(values)...)));
+  }
+
+  double largest() const { return *std::max_element(c_.powder.diameters.begin(), c_.powder.diameters.end()); }
+  double smallest() const { return *std::min_element(c_.powder.diameters.begin(), c_.powder.diameters.end()); }
+  bool distribution_known() const {
+    return known({"powder.diameters", "powder.fractions"}) && !c_.powder.diameters.empty() &&
+           c_.powder.diameters.size() == c_.powder.fractions.size();
+  }
+
+  void powder() const {
+    PowderSettings const& powder = c_.powder;
+    if (known({"powder.particles"}) && powder.particles == 0)
+      report("powder.particles", "= 0 (empty powder) feed grains");
+    if (!known({"powder.diameters", "powder.fractions"})) return;
+    if (powder.diameters.empty()) {
+      report("powder.diameters", "is empty (empty powder) give at least one grain size");
+    } else if (powder.diameters.size() != powder.fractions.size()) {
+      report("powder.fractions", "has {} values (powder.diameters has {}) give one for each diameter",
+             powder.fractions.size(), powder.diameters.size());
+    } else if (double const sum = std::accumulate(powder.fractions.begin(), powder.fractions.end(), 0.0);
+               std::abs(sum - 1) > 1e-6) {
+      report("powder.fractions", "sum to {:.6g} (must sum to 1)", sum);
+    }
+  }
+
+  /// Mean volume of a grain; by volume the numbers are proportional to fraction / volume.
+  double mean_grain_volume() const {
+    double share = 0, weighted = 0;
+    for (std::size_t i = 0; i < c_.powder.diameters.size(); ++i) {
+      double const volume = pi / 6 * std::pow(c_.powder.diameters[i], 3), fraction = c_.powder.fractions[i];
+      bool const by_number = c_.powder.basis == SizeBasis::number;
+      share += by_number ? fraction : fraction / volume;
+      weighted += by_number ? fraction * volume : fraction;
+    }
+    return weighted / share;
+  }
+
+  /// The feed must stand above the platforms, or the blade passes over it, and must stay on its zone.
+  void feed() const {
+    MachineSettings const& m = c_.machine;
+    if (!distribution_known() || !known({"powder.basis", "powder.particles", "machine.accumulation_length",
+                                         "machine.accumulation_depth", "machine.width"})) {
+      return;
+    }
+    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume();
+    if (!(volume > 0)) return;
+    double const solid_height = volume / (m.accumulation_length * m.width);
+    double const loosest = solid_height / 0.5, densest = solid_height / 0.64;
+    if (loosest <= m.accumulation_depth) {
+      report("powder.particles",
+             "= {} (they settle to {} in an accumulation zone {} deep: the blade passes over them) "
+             "feed more grains or lower machine.accumulation_depth",
+             c_.powder.particles, length(loosest), length(m.accumulation_depth));
+    } else if (densest - m.accumulation_depth > m.accumulation_length) {
+      report("powder.particles",
+             "= {} (they would stand {} above a zone {} long and slide off it) feed fewer grains or "
+             "lengthen machine.accumulation_length",
+             c_.powder.particles, length(densest - m.accumulation_depth), length(m.accumulation_length));
+    }
+  }
+
+  /// Rayleigh time pi R sqrt(rho / G) / (0.1631 nu + 0.8766) of the smallest grain.
+  void time_step() const {
+    ContactSettings const& contact = c_.contact;
+    if (!distribution_known() || !known({"contact.time_step_fraction", "contact.youngs_modulus",
+                                         "contact.poisson_ratio", "material.density", "run.unsafe_time_step"})) {
+      return;
+    }
+    double const shear_modulus = contact.youngs_modulus / (2 * (1 + contact.poisson_ratio));
+    double const rayleigh_time = pi * 0.5 * smallest() * std::sqrt(c_.material.density / shear_modulus) /
+                                 (0.1631 * contact.poisson_ratio + 0.8766);
+    if (contact.time_step_fraction > 0.15 && !c_.run.unsafe_time_step) {
+      report(
+          "contact.time_step_fraction",
+          "= {:g} (time step {} is above the stable limit: 0.15 of the Rayleigh time, {}, of a grain of {}) lower it, "
+          "or set run.unsafe_time_step = true to see the guards stop the run",
+          contact.time_step_fraction, format_quantity(contact.time_step_fraction * rayleigh_time, Dimension::time),
+          format_quantity(rayleigh_time, Dimension::time), length(smallest()));
+    }
+  }
+
+  void machine() const {
+    MachineSettings const& m = c_.machine;
+    if (known({"machine.edge_radius", "machine.blade_width"}) && m.edge_radius > 0.5 * m.blade_width) {
+      report("machine.edge_radius", "= {} (must be at most half of machine.blade_width = {})", length(m.edge_radius),
+             length(m.blade_width));
+    }
+    if (!distribution_known()) return;
+    if (known({"machine.width"}) && m.width <= 3 * largest()) {
+      report("machine.width",
+             "= {} (must be above 3 largest grains, {}, or a grain meets its own periodic image) widen it",
+             length(m.width), length(3 * largest()));
+    }
+    if (known({"machine.layer_thickness", "machine.blade_clearance"}) &&
+        m.layer_thickness + m.blade_clearance < smallest()) {
+      report("machine.layer_thickness", "= {} (no grain fits under the blade: the smallest has {})",
+             length(m.layer_thickness), length(smallest()));
+    }
+  }
+
+  void frozen_zone() const {
+    MachineSettings const& m = c_.machine;
+    if (!m.frozen_zone || !known({"machine.frozen_zone", "machine.accumulation_length", "machine.gap_length",
+                                  "machine.deposition_length"})) {
+      return;
+    }
+    auto const [from, to] = *m.frozen_zone;
+    if (!(from < to)) {
+      report("machine.frozen_zone", "= [{}, {}] (must ascend)", length(from), length(to));
+    } else if (from < m.deposition_begin() * (1 - 1e-9) || to > m.deposition_end() * (1 + 1e-9)) {
+      report("machine.frozen_zone", "= [{}, {}] (must lie in the deposition zone, [{}, {}])", length(from), length(to),
+             length(m.deposition_begin()), length(m.deposition_end()));
+    }
+  }
+
+  void material() const {
+    Material const& metal = c_.material;
+    if (!known({"material.solidus", "material.liquidus", "material.boiling_point"}) || metal.liquidus == 0) return;
+    auto const kelvin = [](double T) { return format_quantity(T, Dimension::temperature); };
+    if (metal.solidus > metal.liquidus) {
+      report("material.solidus", "= {} (must not be above the liquidus, {})", kelvin(metal.solidus),
+             kelvin(metal.liquidus));
+    }
+    if (metal.liquidus >= metal.boiling_point) {
+      report("material.liquidus", "= {} (must be below the boiling point, {})", kelvin(metal.liquidus),
+             kelvin(metal.boiling_point));
+    }
+    if (known({"heat.ambient_temperature"}) && c_.heat.ambient_temperature >= metal.solidus) {
+      report("heat.ambient_temperature",
+             "= {} (must be below the solidus, {}, or all is molten before the laser comes)",
+             kelvin(c_.heat.ambient_temperature), kelvin(metal.solidus));
+    }
+  }
+
+  void scan() const {
+    ScanSettings const& scan = c_.scan;
+    double const half_turns = scan.rotation / pi;
+    if (known({"scan.rotation"}) && std::abs(half_turns - std::round(half_turns)) > 1e-9) {
+      report("scan.rotation", "= {} (must be a multiple of 180 deg: tracks run along the recoating direction)",
+             format_quantity(scan.rotation, Dimension::angle));
+    }
+    if (!known({"scan.kind", "scan.tracks", "scan.hatch_spacing"})) return;
+    if (scan.kind == ScanKind::track && scan.tracks != 1) {
+      report("scan.tracks", "= {} (scan.kind \"track\" is one track) set scan.kind = \"hatch\"", scan.tracks);
+    }
+    if (scan.kind == ScanKind::hatch && scan.tracks > 1 && scan.hatch_spacing == 0) {
+      report("scan.hatch_spacing", "= 0 (must be above 0 with {} tracks)", scan.tracks);
+    }
+  }
+
+  /// The patch is centred on the deposition zone; tracks run along x, y is periodic.
+  void beam_on_bed() const {
+    ScanSettings const& scan = c_.scan;
+    if (!known({"laser.spot_diameter", "laser.spot_definition"})) return;
+    double const spot = 2 * c_.laser.spot_radius();
+    if (known({"scan.track_length", "machine.deposition_length"})) {
+      double const excess = scan.track_length + spot - c_.machine.deposition_length;
+      if (excess > 1e-12) {
+        report("scan.track_length",
+               "= {} (beam off the bed: track and spot need {}, the deposition zone has {}) "
+               "shorten the track by {}",
+               length(scan.track_length), length(scan.track_length + spot), length(c_.machine.deposition_length),
+               length(excess));
+      }
+    }
+    if (known({"scan.tracks", "scan.hatch_spacing", "machine.width"})) {
+      double const needed = static_cast<double>(scan.tracks - 1) * scan.hatch_spacing + spot;
+      double const excess = needed - c_.machine.width;
+      if (excess > 1e-12) {
+        report(scan.tracks > 1 ? "scan.hatch_spacing" : "laser.spot_diameter",
+               "is too large (beam off the bed: {} tracks and the spot need {}, machine.width is {}) narrow them by {}",
+               scan.tracks, length(needed), length(c_.machine.width), length(excess));
+      }
+    }
+  }
+
+  void heat_grid() const {
+    double const cell = c_.heat.cell_size;
+    MachineSettings const& m = c_.machine;
+    if (!known({"heat.cell_size"})) return;
+    struct Extent {
+      char const* key;
+      double value;
+    };
+    for (auto const& [key, value] :
+         {Extent{"machine.width", m.width}, Extent{"machine.deposition_length", m.deposition_length},
+          Extent{"machine.layer_thickness", m.layer_thickness},
+          Extent{"heat.substrate_depth", c_.heat.substrate_depth}}) {
+      if (!known({key}) || divides(cell, value)) continue;
+      report("heat.cell_size", "= {} (must divide {} = {})", length(cell), key, length(value));
+    }
+    if (known({"laser.spot_diameter", "laser.spot_definition"}) && cell > c_.laser.spot_radius()) {
+      report("heat.cell_size", "= {} (must resolve the beam: at most its 1/e2 radius, {})", length(cell),
+             length(c_.laser.spot_radius()));
+    }
+    if (!known(
+            {"scan.track_length", "heat.margin", "heat.substrate_depth", "machine.width", "machine.deposition_length"}))
+      return;
+    double const extent = std::min(c_.scan.track_length + 2 * c_.heat.margin, m.deposition_length);
+    double const cells = extent * m.width * (c_.heat.substrate_depth + 2 * m.layer_thickness) / std::pow(cell, 3);
+    if (cells > 2e9) {
+      report("heat.cell_size", "= {} (the grid would have {:.2g} cells, at most 2e9 can be numbered) coarsen it",
+             length(cell), cells);
+    }
+  }
+
+  void optics() const {
+    if (known({"optics.position_spacing", "laser.spot_diameter"}) &&
+        c_.optics.position_spacing > c_.laser.spot_diameter) {
+      report("optics.position_spacing",
+             "= {} (must be at most laser.spot_diameter, {}, or parts of the track are not hit)",
+             length(c_.optics.position_spacing), length(c_.laser.spot_diameter));
+    }
+    if (!c_.laser.absorptivity && known({"material.refractive_index", "optics.refractive_index"}) &&
+        c_.material.refractive_index.real() <= 0) {
+      report(c_.optics.refractive_index ? "optics.refractive_index" : "material.refractive_index",
+             "has n = {:g} (must be above 0)", c_.material.refractive_index.real());
+    }
+  }
+
+  Case const& c_;
+  CaseOrigin const& origin_;
+};
+
+}  // namespace
+
+void check_case(Case const& c, CaseOrigin const& origin) { CaseChecks(c, origin).run(); }
+
+}  // namespace layerloop

@@ -1,0 +1,292 @@
+#include "core/case_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/case_checks.hpp"
+#include "core/case_schema.hpp"
+#include "core/case_values.hpp"
+#include "core/error.hpp"
+#include "core/spelling.hpp"
+#include "core/toml_entries.hpp"
+#include "core/write_file.hpp"
+
+namespace layerloop {
+namespace {
+
+bool is_material(std::string const& table) { return table.starts_with("material."); }
+
+bool is_table(std::string const& name) {
+  return is_material(name) || name == "material" || name == "effects" ||
+         std::find(case_tables().begin(), case_tables().end(), name) != case_tables().end();
+}
+
+/// Tables that hold a key of this name: "[scan]", "[laser] or [optics]".
+std::string tables_with(std::string const& key) {
+  std::string list;
+  for (CaseKey const& row : case_schema()) {
+    if (row.key != key || row.table.starts_with("effects.")) continue;
+    list += (list.empty() ? "[" : " or [") + (row.table == "material" ? "material.NAME" : row.table) + "]";
+  }
+  return list;
+}
+
+std::vector<std::string> keys_of(std::string const& table) {
+  std::vector<std::string> keys;
+  for (CaseKey const& row : case_schema()) {
+    if (row.table == (is_material(table) ? "material" : table)) keys.push_back(row.key);
+  }
+  return keys;
+}
+
+/// Turns entries into a case and collects every fault on the way.
+class CaseReader {
+ public:
+  CaseReader(TomlContent content, std::vector<TomlEntry> overrides) : tables_(std::move(content.tables)) {
+    for (TomlEntry& entry : content.entries) take(std::move(entry));
+    for (TomlEntry& entry : overrides) take(std::move(entry));
+  }
+
+  Case read() {
+    report_unknown();
+    for (CaseKey const& row : case_schema()) {
+      if (row.table != "material") fill(row, row.table, case_);
+    }
+    read_materials();
+    report_missing();
+    check_case(case_, {[this](std::string const& key) { return !unsound_.contains(key); },
+                       [this](std::string const& key, std::string const& message) { report(place_of(key), message); }});
+    return case_;
+  }
+
+  std::vector<Fault> const& faults() const { return faults_; }
+
+ private:
+  void take(TomlEntry entry) {
+    std::string const name = entry.table + "." + entry.key;
+    if (!entry.place.option.empty()) tables_.emplace(entry.table, entry.place);
+    written_.insert_or_assign(name, std::move(entry));
+  }
+
+  void report(Place const& place, std::string const& message) { faults_.push_back({place, message}); }
+
+  /// Where the user has to look: the key itself, else its table, else the top of the file.
+  Place place_of(std::string const& name) const {
+    std::string full = name;
+    if (name.starts_with("material.")) full = "material." + case_.powder.material + name.substr(8);
+    if (auto const entry = written_.find(full); entry != written_.end()) return entry->second.place;
+    auto const table = tables_.find(full.substr(0, full.rfind('.')));
+    return table != tables_.end() ? table->second : Place{};
+  }
+
+  void report_unknown() {
+    for (auto const& [table, place] : tables_) {
+      if (is_table(table)) continue;
+      if (table.starts_with("effects.")) {
+        report_unknown_effect(table, place);
+      } else {
+        report(place, fmt::format("unknown table [{}]{}", table, did_you_mean(table, case_tables())));
+        meant_tables_.insert(likely_name(table, case_tables()).value_or(""));
+      }
+    }
+    for (auto const& [name, entry] : written_) {
+      if (entry.table.empty()) {
+        report_outside(entry);
+      } else if (is_table(entry.table) && !find_key(entry.table, entry.key)) {
+        report_unknown_key(entry);
+      }
+    }
+  }
+
+  void report_unknown_effect(std::string const& table, Place const& place) {
+    std::vector<std::string> names;
+    for (std::string const& known : case_tables()) {
+      if (known.starts_with("effects.")) names.push_back(known.substr(8));
+    }
+    report(place, fmt::format("unknown effect \"{}\" (known: {}){}", table.substr(8), fmt::join(names, ", "),
+                              did_you_mean(table.substr(8), names)));
+  }
+
+  void report_outside(TomlEntry const& entry) {
+    std::string const belongs = tables_with(entry.key);
+    if (is_table(entry.key)) {
+      report(entry.place, fmt::format("\"{0}\" is a table (write [{0}] on a line of its own)", entry.key));
+    } else {
+      report(entry.place, fmt::format("unknown key \"{}\" outside of any table{}", entry.key,
+                                      belongs.empty() ? "" : "; it belongs in " + belongs));
+    }
+  }
+
+  void report_unknown_key(TomlEntry const& entry) {
+    std::string hint = did_you_mean(entry.key, keys_of(entry.table));
+    if (hint.empty() && !tables_with(entry.key).empty()) hint = "; it belongs in " + tables_with(entry.key);
+    if (entry.table == "effects" || entry.table == "material") {
+      hint = fmt::format("; write a table [{}.{}]", entry.table, entry.table == "effects" ? entry.key : "NAME");
+    }
+    report(entry.place, fmt::format("unknown key \"{}\" in [{}]{}", entry.key, entry.table, hint));
+    meant_keys_.insert(entry.table + "." + likely_name(entry.key, keys_of(entry.table)).value_or(""));
+  }
+
+  /// Puts the written value of a row, or its default, into `into`; `table` is the row's own or that of one material.
+  void fill(CaseKey const& row, std::string const& table, Case& into) {
+    if (auto const entry = written_.find(table + "." + row.key); entry != written_.end()) {
+      try {
+        store(row, entry->second.value, into);
+      } catch (InputError const& fault) {
+        report(entry->second.place, fault.what());
+        unsound_.insert(name_of(row));
+      }
+      return;
+    }
+    std::string const preset = preset_value(case_.preset, table, row.key);
+    std::string const& value = preset.empty() ? row.fallback : preset;
+    if (value.starts_with('=')) {
+      std::string const other = value.substr(1);
+      std::size_t const dot = other.find('.');
+      CaseKey const& source = *find_key(other.substr(0, dot), other.substr(dot + 1));
+      std::get<Field<double>>(row.target)(into) = std::get<Field<double>>(source.target)(into);
+      if (unsound_.contains(other)) unsound_.insert(name_of(row));
+    } else if (!value.empty()) {
+      store(row, parse_value(value), into);
+    } else if (row.need != Need::never) {
+      absent_.push_back({&row, table});
+    }
+  }
+
+  /// Built-in metals, changed and joined by the [material.NAME] tables; the powder's becomes that of the case.
+  void read_materials() {
+    std::map<std::string, Material> metals = built_in_materials();
+    std::set<std::string> names;
+    for (auto const& [table, place] : tables_) {
+      if (is_material(table)) names.insert(table.substr(9));
+    }
+    std::string const& chosen = case_.powder.material;
+    if (metals.contains(chosen)) names.insert(chosen);  // a preset may change it
+    for (std::string const& name : names) {
+      bool const is_new = !metals.contains(name);
+      Case holder;
+      holder.preset = case_.preset;
+      holder.material = metals[name];
+      holder.material.name = name;
+      std::size_t const absent_before = absent_.size();
+      std::set<std::string> const unsound_before = unsound_;
+      for (CaseKey const& row : case_schema()) {
+        if (row.table == "material") fill(row, "material." + name, holder);
+      }
+      if (!is_new) absent_.resize(absent_before);
+      if (name != chosen) unsound_ = unsound_before;
+      metals[name] = holder.material;
+    }
+    choose_material(metals);
+  }
+
+  void choose_material(std::map<std::string, Material> const& metals) {
+    std::string const& chosen = case_.powder.material;
+    if (auto const metal = metals.find(chosen); metal != metals.end()) {
+      case_.material = metal->second;
+    } else {
+      std::vector<std::string> names;
+      for (auto const& [name, metal] : metals) names.push_back(name);
+      if (!chosen.empty()) {
+        report(place_of("powder.material"),
+               fmt::format("powder.material = \"{}\" is not known (known: {}; [material.{}] may define it){}", chosen,
+                           fmt::join(names, ", "), chosen, did_you_mean(chosen, names)));
+      }
+      for (std::string const& key : keys_of("material")) unsound_.insert("material." + key);
+    }
+    if (auto const& index = case_.optics.refractive_index)
+      case_.material.refractive_index = {index->at(0), index->at(1)};
+  }
+
+  bool needed(CaseKey const& row) const {
+    switch (row.need) {
+      case Need::always:
+        return true;
+      case Need::with_laser:
+        return !written_.contains("machine.frozen_zone");
+      case Need::with_cohesion:
+        return case_.contact.cohesion != Cohesion::none;
+      case Need::never:
+        return false;
+    }
+    return false;
+  }
+
+  void report_missing() {
+    std::map<std::string, std::vector<std::string>> of_absent_table;
+    for (auto const& [row, table] : absent_) {
+      unsound_.insert(name_of(*row));
+      if (!needed(*row) || meant_tables_.contains(table) || meant_keys_.contains(table + "." + row->key)) continue;
+      if (!tables_.contains(table)) {
+        of_absent_table[table].push_back(row->key);
+        continue;
+      }
+      std::string const unit(si_unit(row->dimension));
+      report(tables_.at(table), fmt::format("missing key \"{}\" in [{}] ({}{})", row->key, table, row->sentence,
+                                            unit.empty() ? "" : " [" + unit + "]"));
+    }
+    for (auto const& [table, keys] : of_absent_table) {
+      report({}, fmt::format("missing table [{}] (it must hold {})", table, fmt::join(keys, ", ")));
+    }
+  }
+
+  struct Absent {
+    CaseKey const* row;
+    std::string table;
+  };
+
+  std::map<std::string, TomlEntry> written_;  // by "table.key"
+  std::map<std::string, Place> tables_;
+  Case case_;
+  std::vector<Fault> faults_;
+  std::set<std::string> unsound_;  // names of rows whose value must not be used in a check
+  std::vector<Absent> absent_;
+  std::set<std::string> meant_keys_, meant_tables_;  // misspelt, so not missing as well
+};
+
+[[noreturn]] void throw_faults(std::vector<Fault> faults, std::string const& file) {
+  auto const order = [](Fault const& fault) {
+    return std::tuple(!fault.place.option.empty(), fault.place.line, fault.place.column);
+  };
+  std::stable_sort(faults.begin(), faults.end(), [&](Fault const& a, Fault const& b) { return order(a) < order(b); });
+  std::string all;
+  for (Fault const& fault : faults) {
+    Place const& place = fault.place;
+    std::string const where =
+        place.option.empty() ? fmt::format("{}:{}:{}", file, place.line, place.column) : place.option;
+    all += fmt::format("{}{}: {}", all.empty() ? "" : "\n", where, fault.message);
+  }
+  throw InputError(all);
+}
+
+}  // namespace
+
+Case read_case(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw FileError(fmt::format("cannot read the case {} (not a file)", path.string()));
+  }
+  std::vector<Fault> syntax;
+  TomlContent content;
+  try {
+    content = parse_toml(read_file(path));
+  } catch (SyntaxFault const& fault) {
+    syntax.push_back(fault.fault);
+  }
+  std::vector<TomlEntry> set;
+  for (std::string const& option : overrides) {
+    try {
+      set.push_back(parse_override(option));
+    } catch (SyntaxFault const& fault) {
+      syntax.push_back(fault.fault);
+    }
+  }
+  if (!syntax.empty()) throw_faults(syntax, path.string());
+  CaseReader reader(std::move(content), std::move(set));
+  Case const result = reader.read();
+  if (!reader.faults().empty()) throw_faults(reader.faults(), path.string());
+  return result;
+}
+
+}  // namespace layerloop

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include "core/case_file.hpp"
+#include "core/case_schema.hpp"
+#include "core/case_values.hpp"
+
+namespace layerloop {
+namespace {
+
+/// What may be written: a unit, a list of words, a kind of value.
+std::string value_column(CaseKey const& row) {
+  if (auto const* const choice = std::get_if<Choice>(&row.target)) {
+    std::string words;
+    for (std::string const& word : choice->words) words += fmt::format("{}`\"{}\"`", words.empty() ? "" : ", ", word);
+    return words;
+  }
+  if (std::holds_alternative<Field<bool>>(row.target)) return "true, false";
+  if (std::holds_alternative<Field<std::string>>(row.target)) return "text";
+  bool const whole = std::holds_alternative<Field<std::int64_t>>(row.target) ||
+                     std::holds_alternative<Field<std::uint64_t>>(row.target);
+  std::string const unit(si_unit(row.dimension));
+  std::string const kind = whole ? "whole number" : unit.empty() ? "number" : unit;
+  if (std::holds_alternative<Field<std::vector<double>>>(row.target)) return fmt::format("list, {}", kind);
+  return kind;
+}
+
+std::string default_column(CaseKey const& row) {
+  if (row.fallback.starts_with('=')) return fmt::format("`{}`", row.fallback.substr(1));
+  if (!row.fallback.empty()) return fmt::format("`{}`", row.fallback);
+  switch (row.need) {
+    case Need::always:
+      return row.table == "material" ? "built-in" : "required";
+    case Need::with_laser:
+      return row.table == "material" ? "built-in" : "required (not with `frozen_zone`)";
+    case Need::with_cohesion:
+      return "required with cohesion";
+    case Need::never:
+      return "none";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string resolved_toml(Case const& checked) {
+  std::string text, table;
+  for (CaseKey const& row : case_schema()) {
+    std::optional<std::string> const value = stored(row, checked);
+    bool const never_given = row.need != Need::always && row.fallback.empty() && value == stored(row, Case{});
+    if (!value || never_given) continue;
+    if (row.table != table) {
+      table = row.table;
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n",
+                          table == "material" ? "material." + toml_text(checked.material.name) : table);
+    }
+    text += fmt::format("{} = {}\n", row.key, *value);
+  }
+  return text;
+}
+
+std::string case_key_page() {
+  std::string page =
+      "# Keys of the case file\n\n"
+      "Written by the program from its schema table (`layerloop check --help-case`); do not edit.\n"
+      "A quantity is text with a unit (`\"30 um\"`, `\"0.2 GPa\"`) or a plain number in the SI unit of its row. "
+      "The frame: z up, x the recoating direction.\n";
+  std::string table;
+  for (CaseKey const& row : case_schema()) {
+    if (row.table != table) {
+      table = row.table;
+      page += fmt::format("\n## [{}]\n\n| key | value | range | default | meaning |\n|---|---|---|---|---|\n",
+                          table == "material" ? "material.NAME" : table);
+    }
+    page += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.key, value_column(row), shown_range(row),
+                        default_column(row), row.sentence);
+  }
+  std::string metals;
+  for (auto const& [name, metal] : built_in_materials())
+    metals += fmt::format("{}`{}`", metals.empty() ? "" : ", ", name);
+  return page + fmt::format("\nMetals known without a table: {}.\n", metals);
+}
+
+}  // namespace layerloop

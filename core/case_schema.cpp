@@ -1,0 +1,689 @@
+#include "core/case_schema.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace layerloop {
+namespace {
+
+using D = Dimension;
+constexpr auto open = Range::End::open;
+
+/// `at<&Case::laser, &LaserSettings::power>` reaches that member in a case.
+template <auto... path>
+constexpr auto at = [](Case& into) -> auto& {
+  return (into.*....*path);
+};
+
+template <auto... path>
+Choice choice(std::vector<std::string> words) {
+  return {std::move(words), [](Case const& from) { return static_cast<std::size_t>((from.*....*path)); },
+          [](Case& into, std::size_t index) {
+            auto& member = (into.*....*path);
+            member = static_cast<std::remove_reference_t<decltype(member)>>(index);
+          }};
+}
+
+template <auto... path>
+Choice word(std::vector<std::string> const& words) {
+  return {words,
+          [words](Case const& from) {
+            return static_cast<std::size_t>(std::find(words.begin(), words.end(), (from.*....*path)) - words.begin());
+          },
+          [words](Case& into, std::size_t index) { (into.*....*path) = words.at(index); }};
+}
+
+std::vector<CaseKey> powder_rows() {
+  using P = PowderSettings;
+  using C = ContactSettings;
+  constexpr auto powder = &Case::powder;
+  constexpr auto contact = &Case::contact;
+  return {
+      {"case", "name", at<&Case::name>, D::none, {}, Need::never, "\"case\"", "Name of the case, for reports."},
+      {"case",
+       "seed",
+       at<&Case::seed>,
+       D::none,
+       {0, 9.2e18},
+       Need::never,
+       "1",
+       "Seed of every random number; the same seed gives the same result."},
+      {"case",
+       "preset",
+       word<&Case::preset>({"none", "thesis"}),
+       D::none,
+       {},
+       Need::never,
+       "\"none\"",
+       "Set of defaults that the file may override. `thesis`: powder and contact values of the spreading thesis."},
+
+      {"powder",
+       "material",
+       at<powder, &P::material>,
+       D::none,
+       {},
+       Need::always,
+       "",
+       "Metal of grains, plate and part: a built-in one or a [material.NAME] of the file."},
+      {"powder",
+       "basis",
+       choice<powder, &P::basis>({"number", "volume"}),
+       D::none,
+       {},
+       Need::always,
+       "",
+       "Whether `fractions` are shares of the number or of the volume of the grains."},
+      {"powder",
+       "diameters",
+       at<powder, &P::diameters>,
+       D::length,
+       {1e-6, 5e-4},
+       Need::always,
+       "",
+       "Grain diameters of the size distribution."},
+      {"powder",
+       "fractions",
+       at<powder, &P::fractions>,
+       D::none,
+       {0, 1},
+       Need::always,
+       "",
+       "Share of each diameter, by `basis`; they sum to 1."},
+      {"powder",
+       "particles",
+       at<powder, &P::particles>,
+       D::none,
+       {0, 1e9},
+       Need::always,
+       "",
+       "Grains fed into the accumulation zone before the first layer."},
+
+      {"contact",
+       "youngs_modulus",
+       at<contact, &C::youngs_modulus>,
+       D::pressure,
+       {1e6, 1e12},
+       Need::always,
+       "",
+       "Young's modulus of a grain; softened values (0.2 GPa) allow longer time steps."},
+      {"contact",
+       "poisson_ratio",
+       at<contact, &C::poisson_ratio>,
+       D::none,
+       {0, 0.49},
+       Need::always,
+       "",
+       "Poisson's ratio of a grain."},
+      {"contact",
+       "restitution",
+       at<contact, &C::restitution>,
+       D::none,
+       {0.01, 1},
+       Need::always,
+       "",
+       "Coefficient of restitution: speed after over speed before a head-on impact."},
+      {"contact",
+       "sliding_friction",
+       at<contact, &C::sliding_friction>,
+       D::none,
+       {0, 5},
+       Need::always,
+       "",
+       "Coulomb friction between grains."},
+      {"contact",
+       "rolling_friction",
+       at<contact, &C::rolling_friction>,
+       D::none,
+       {0, 5},
+       Need::always,
+       "",
+       "Rolling friction between grains (constant directional torque)."},
+      {"contact",
+       "cohesion",
+       choice<contact, &C::cohesion>({"none", "sjkr2"}),
+       D::none,
+       {},
+       Need::never,
+       "\"sjkr2\"",
+       "Cohesion law; `sjkr2`: energy density times the contact area 4 pi R* overlap."},
+      {"contact",
+       "cohesion_energy_density",
+       at<contact, &C::cohesion_energy_density>,
+       D::energy_density,
+       {0, 1e9},
+       Need::with_cohesion,
+       "",
+       "Cohesion energy density of `sjkr2`; belongs to one Young's modulus."},
+      {"contact",
+       "wall_friction",
+       at<contact, &C::wall_friction>,
+       D::none,
+       {0, 5},
+       Need::never,
+       "=contact.sliding_friction",
+       "Coulomb friction between grains and platforms, blade and part."},
+      {"contact",
+       "wall_cohesion_area",
+       choice<contact, &C::wall_cohesion_area>({"liggghts", "eq6"}),
+       D::none,
+       {},
+       Need::never,
+       "\"liggghts\"",
+       "Contact area of cohesion at a wall: 2 pi R overlap (`liggghts`) or 4 pi R overlap (`eq6`)."},
+      {"contact",
+       "coulomb_on",
+       choice<contact, &C::coulomb_on>({"repulsive", "total"}),
+       D::none,
+       {},
+       Need::never,
+       "\"repulsive\"",
+       "Normal force that limits friction: without (`repulsive`) or with (`total`) cohesion."},
+      {"contact",
+       "time_step_fraction",
+       at<contact, &C::time_step_fraction>,
+       D::none,
+       {0, 10, open},
+       Need::never,
+       "0.149",
+       "Time step as a share of the Rayleigh time of the smallest grain; above 0.15 the run is refused."},
+  };
+}
+
+std::vector<CaseKey> machine_rows() {
+  using M = MachineSettings;
+  constexpr auto machine = &Case::machine;
+  return {
+      {"machine",
+       "layer_thickness",
+       at<machine, &M::layer_thickness>,
+       D::length,
+       {5e-6, 5e-4},
+       Need::always,
+       "",
+       "Step by which the plate goes down before each layer."},
+      {"machine",
+       "recoating_speed",
+       at<machine, &M::recoating_speed>,
+       D::speed,
+       {1e-3, 1},
+       Need::always,
+       "",
+       "Speed of the blade."},
+      {"machine",
+       "dose_factor",
+       at<machine, &M::dose_factor>,
+       D::none,
+       {0, 20},
+       Need::never,
+       "1.2",
+       "Grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %."},
+      {"machine",
+       "accumulation_length",
+       at<machine, &M::accumulation_length>,
+       D::length,
+       {5e-5, 0.02},
+       Need::always,
+       "",
+       "Length of the zone that holds the feed, along the recoating direction."},
+      {"machine",
+       "accumulation_depth",
+       at<machine, &M::accumulation_depth>,
+       D::length,
+       {0, 0.02},
+       Need::always,
+       "",
+       "Depth of the accumulation zone's floor below the platforms; grains above the platforms are swept away."},
+      {"machine",
+       "gap_length",
+       at<machine, &M::gap_length>,
+       D::length,
+       {0, 0.02},
+       Need::always,
+       "",
+       "Length of the platform between accumulation and deposition zone."},
+      {"machine",
+       "deposition_length",
+       at<machine, &M::deposition_length>,
+       D::length,
+       {5e-5, 0.05},
+       Need::always,
+       "",
+       "Length of the zone that receives the layer."},
+      {"machine",
+       "width",
+       at<machine, &M::width>,
+       D::length,
+       {2e-5, 0.02},
+       Need::always,
+       "",
+       "Period across the recoating direction: what leaves on one side enters on the other."},
+      {"machine",
+       "blade_width",
+       at<machine, &M::blade_width>,
+       D::length,
+       {5e-6, 0.01},
+       Need::always,
+       "",
+       "Extent of the blade along the recoating direction."},
+      {"machine",
+       "edge_radius",
+       at<machine, &M::edge_radius>,
+       D::length,
+       {1e-7, 5e-3},
+       Need::always,
+       "",
+       "Radius of the blade's rounded lower edges."},
+      {"machine",
+       "blade_clearance",
+       at<machine, &M::blade_clearance>,
+       D::length,
+       {0, 1e-3},
+       Need::never,
+       "0",
+       "Height of the blade above the platforms; it adds to the layer thickness."},
+      {"machine",
+       "blade_collision",
+       choice<machine, &M::blade_collision>({"stop", "report"}),
+       D::none,
+       {},
+       Need::never,
+       "\"stop\"",
+       "What happens when raised solid is in the blade's way."},
+      {"machine",
+       "frozen_zone",
+       at<machine, &M::frozen_zone>,
+       D::length,
+       {0, 0.1},
+       Need::never,
+       "",
+       "[from, to] along x: freeze this part of each layer and mesh its surface, instead of a laser."},
+  };
+}
+
+std::vector<CaseKey> laser_rows() {
+  using L = LaserSettings;
+  using O = OpticsSettings;
+  using S = ScanSettings;
+  constexpr auto laser = &Case::laser;
+  constexpr auto optics = &Case::optics;
+  constexpr auto scan = &Case::scan;
+  return {
+      {"laser", "power", at<laser, &L::power>, D::power, {1, 5000}, Need::with_laser, "", "Power of the beam."},
+      {"laser",
+       "wavelength",
+       at<laser, &L::wavelength>,
+       D::length,
+       {2e-7, 1.2e-5},
+       Need::with_laser,
+       "",
+       "Wavelength of the beam; the refractive index must belong to it."},
+      {"laser",
+       "spot_diameter",
+       at<laser, &L::spot_diameter>,
+       D::length,
+       {1e-6, 2e-3},
+       Need::with_laser,
+       "",
+       "Diameter of the Gaussian beam on the bed, measured by `spot_definition`."},
+      {"laser",
+       "spot_definition",
+       choice<laser, &L::spot_definition>({"1/e2", "D4sigma", "FWHM"}),
+       D::none,
+       {},
+       Need::with_laser,
+       "",
+       "Level at which `spot_diameter` is measured (1/e2 = D4sigma = 1.70 FWHM for a Gaussian)."},
+      {"laser",
+       "absorptivity",
+       at<laser, &L::absorptivity>,
+       D::none,
+       {0, 1, open},
+       Need::never,
+       "",
+       "Share of the power that is absorbed; given, it replaces the ray tracer."},
+
+      {"optics",
+       "refractive_index",
+       at<optics, &O::refractive_index>,
+       D::none,
+       {0, 100},
+       Need::never,
+       "",
+       "[n, k] of the metal at the laser's wavelength; replaces the material's."},
+      {"optics",
+       "rays",
+       at<optics, &O::rays>,
+       D::none,
+       {100, 1e9},
+       Need::never,
+       "20000",
+       "Rays traced for each beam position."},
+      {"optics",
+       "position_spacing",
+       at<optics, &O::position_spacing>,
+       D::length,
+       {1e-6, 1e-3},
+       Need::never,
+       "\"20 um\"",
+       "Distance along a track between beam positions that are traced."},
+
+      {"scan",
+       "kind",
+       choice<scan, &S::kind>({"track", "hatch"}),
+       D::none,
+       {},
+       Need::never,
+       "\"hatch\"",
+       "One track, or parallel tracks to and fro."},
+      {"scan",
+       "scan_speed",
+       at<scan, &S::scan_speed>,
+       D::speed,
+       {0.01, 20},
+       Need::with_laser,
+       "",
+       "Speed of the beam."},
+      {"scan",
+       "track_length",
+       at<scan, &S::track_length>,
+       D::length,
+       {1e-5, 0.05},
+       Need::with_laser,
+       "",
+       "Length of a track, along the recoating direction."},
+      {"scan", "tracks", at<scan, &S::tracks>, D::none, {1, 10000}, Need::never, "1", "Tracks of a layer."},
+      {"scan",
+       "hatch_spacing",
+       at<scan, &S::hatch_spacing>,
+       D::length,
+       {0, 2e-3},
+       Need::never,
+       "0",
+       "Distance between neighbouring tracks; needed with more than one."},
+      {"scan",
+       "rotation",
+       at<scan, &S::rotation>,
+       D::angle,
+       {-1000, 1000},
+       Need::never,
+       "0",
+       "Turn of the hatch from layer to layer: a multiple of 180 deg."},
+      {"scan", "dwell", at<scan, &S::dwell>, D::time, {0, 100}, Need::never, "0", "Time between tracks, laser off."},
+  };
+}
+
+std::vector<CaseKey> heat_and_run_rows() {
+  using H = HeatSettings;
+  using R = RunSettings;
+  constexpr auto heat = &Case::heat;
+  constexpr auto run = &Case::run;
+  return {
+      {"heat",
+       "cell_size",
+       at<heat, &H::cell_size>,
+       D::length,
+       {2e-7, 1e-4},
+       Need::with_laser,
+       "",
+       "Edge of the cubic cells; divides width, deposition length and layer thickness."},
+      {"heat",
+       "substrate_depth",
+       at<heat, &H::substrate_depth>,
+       D::length,
+       {5e-6, 0.01},
+       Need::never,
+       "\"120 um\"",
+       "Depth of the plate that the grid holds."},
+      {"heat",
+       "margin",
+       at<heat, &H::margin>,
+       D::length,
+       {0, 0.01},
+       Need::never,
+       "\"50 um\"",
+       "Distance from the scanned patch to the sides of the grid."},
+      {"heat",
+       "ambient_temperature",
+       at<heat, &H::ambient_temperature>,
+       D::temperature,
+       {1, 2000},
+       Need::never,
+       "300",
+       "Temperature of plate, powder and gas before each exposure."},
+      {"heat",
+       "solver",
+       choice<heat, &H::solver>({"explicit", "implicit", "automatic"}),
+       D::none,
+       {},
+       Need::never,
+       "\"automatic\"",
+       "Time stepping; `automatic`: explicit while the beam is on, implicit while it is off."},
+      {"heat",
+       "powder_contact_conductivity",
+       at<heat, &H::powder_contact_conductivity>,
+       D::conductivity,
+       {0, 100},
+       Need::never,
+       "0.2",
+       "Conductivity across faces between cells of different grains: gas and point contacts."},
+      {"heat",
+       "pool_isotherm",
+       word<heat, &H::pool_isotherm>({"liquidus", "solidus"}),
+       D::none,
+       {},
+       Need::never,
+       "\"liquidus\"",
+       "Isotherm that bounds the melt pool and tells what has melted."},
+
+      {"run", "layers", at<run, &R::layers>, D::none, {1, 100000}, Need::never, "1", "Layers to build."},
+      {"run",
+       "checkpoint",
+       at<run, &R::checkpoint>,
+       D::none,
+       {},
+       Need::never,
+       "true",
+       "Whether a checkpoint is written after each layer."},
+      {"run",
+       "unsafe_time_step",
+       at<run, &R::unsafe_time_step>,
+       D::none,
+       {},
+       Need::never,
+       "false",
+       "Lets a run start with a time step above the stable limit; the guards then stop it."},
+  };
+}
+
+std::vector<CaseKey> material_rows() {
+  using M = Material;
+  constexpr auto m = &Case::material;
+  return {
+      {"material", "density", at<m, &M::density>, D::density, {500, 25000}, Need::always, "", "Density of the solid."},
+      {"material",
+       "conductivity",
+       at<m, &M::conductivity>,
+       D::conductivity,
+       {0.1, 1000},
+       Need::with_laser,
+       "",
+       "Thermal conductivity, solid and liquid: a number or [[temperature, value], ...]."},
+      {"material",
+       "specific_heat",
+       at<m, &M::specific_heat>,
+       D::specific_heat,
+       {50, 10000},
+       Need::with_laser,
+       "",
+       "Specific heat without latent heat: a number or [[temperature, value], ...]."},
+      {"material",
+       "latent_heat",
+       at<m, &M::latent_heat>,
+       D::specific_energy,
+       {1e3, 2e6},
+       Need::with_laser,
+       "",
+       "Latent heat of fusion."},
+      {"material",
+       "solidus",
+       at<m, &M::solidus>,
+       D::temperature,
+       {200, 5000},
+       Need::with_laser,
+       "",
+       "Temperature where melting begins."},
+      {"material",
+       "liquidus",
+       at<m, &M::liquidus>,
+       D::temperature,
+       {200, 5000},
+       Need::with_laser,
+       "",
+       "Temperature where melting ends."},
+      {"material",
+       "boiling_point",
+       at<m, &M::boiling_point>,
+       D::temperature,
+       {500, 8000},
+       Need::with_laser,
+       "",
+       "Boiling point at one atmosphere."},
+      {"material",
+       "heat_of_vaporisation",
+       at<m, &M::heat_of_vaporisation>,
+       D::specific_energy,
+       {1e5, 1e8},
+       Need::with_laser,
+       "",
+       "Heat of vaporisation."},
+      {"material",
+       "molar_mass",
+       at<m, &M::molar_mass>,
+       D::molar_mass,
+       {1e-3, 0.3},
+       Need::with_laser,
+       "",
+       "Molar mass of the vapour."},
+      {"material",
+       "emissivity",
+       at<m, &M::emissivity>,
+       D::none,
+       {0, 1},
+       Need::with_laser,
+       "",
+       "Total emissivity of the surface."},
+      {"material",
+       "refractive_index",
+       at<m, &M::refractive_index>,
+       D::none,
+       {0, 100},
+       Need::with_laser,
+       "",
+       "[n, k] at the laser's wavelength."},
+      {"material", "source", at<m, &M::source>, D::none, {}, Need::always, "", "Where the values come from."},
+  };
+}
+
+/// The effects that the stages carry.
+struct Effect {
+  std::string name, enabled, sentence;
+};
+
+std::vector<Effect> const& effects() {
+  static std::vector<Effect> const rows = {
+      {"latent_heat", "true", "Latent heat of fusion between solidus and liquidus."},
+      {"variable_conductivity", "true", "Conductivity over temperature; off: its value at ambient temperature."},
+      {"evaporation", "false", "Heat carried off by metal vapour (Hertz-Knudsen-Langmuir)."},
+      {"surface_losses", "false", "Radiation and convection from the free surface."},
+  };
+  return rows;
+}
+
+std::vector<CaseKey> effect_rows() {
+  std::vector<CaseKey> rows;
+  for (Effect const& effect : effects()) {
+    auto const enabled = [name = effect.name](Case& into) -> bool& { return into.effects[name].enabled; };
+    auto const strength = [name = effect.name](Case& into) -> double& { return into.effects[name].strength; };
+    std::string const table = "effects." + effect.name;
+    rows.push_back({table, "enabled", enabled, D::none, {}, Need::never, effect.enabled, effect.sentence});
+    rows.push_back({table,
+                    "strength",
+                    strength,
+                    D::none,
+                    {0, 100},
+                    Need::never,
+                    "1",
+                    "Factor on the effect; 0: as if it were off."});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<CaseKey> const& case_schema() {
+  static std::vector<CaseKey> const schema = [] {
+    std::vector<CaseKey> rows;
+    for (auto const part : {powder_rows, machine_rows, laser_rows, heat_and_run_rows, effect_rows, material_rows}) {
+      for (CaseKey& row : part()) rows.push_back(std::move(row));
+    }
+    return rows;
+  }();
+  return schema;
+}
+
+std::string name_of(CaseKey const& row) { return row.table + "." + row.key; }
+
+std::string shown_range(CaseKey const& row) {
+  Range const& range = row.range;
+  if (std::isinf(range.min) && std::isinf(range.max)) return "";
+  return fmt::format("{}{}, {}]", range.lower == Range::End::open ? "(" : "[",
+                     format_quantity(range.min, row.dimension), format_quantity(range.max, row.dimension));
+}
+
+CaseKey const* find_key(std::string const& table, std::string const& key) {
+  std::string const family = table.starts_with("material.") ? "material" : table;
+  for (CaseKey const& row : case_schema()) {
+    if (row.table == family && row.key == key) return &row;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> const& case_tables() {
+  static std::vector<std::string> const tables = [] {
+    std::vector<std::string> names;
+    for (CaseKey const& row : case_schema()) {
+      std::string const name = row.table == "material" ? "material.NAME" : row.table;
+      if (names.empty() || names.back() != name) names.push_back(name);
+    }
+    return names;
+  }();
+  return tables;
+}
+
+std::string preset_value(std::string const& preset, std::string const& table, std::string const& key) {
+  struct Value {
+    std::string_view preset, table, key, value;
+  };
+  // Thesis Table 4 and section 3.2; its density is 12 % above that of IN718 (8190 kg/m3), kept to repeat its runs.
+  static std::vector<Value> const values = {
+      {"thesis", "powder", "material", "\"IN718\""},
+      {"thesis", "powder", "basis", "\"number\""},
+      {"thesis", "powder", "diameters", "[\"13 um\", \"21 um\", \"28 um\", \"42 um\"]"},
+      {"thesis", "powder", "fractions", "[0.2, 0.2, 0.5, 0.1]"},
+      {"thesis", "contact", "youngs_modulus", "\"0.2 GPa\""},
+      {"thesis", "contact", "poisson_ratio", "0.3"},
+      {"thesis", "contact", "restitution", "0.7"},
+      {"thesis", "contact", "sliding_friction", "0.7"},
+      {"thesis", "contact", "rolling_friction", "0.15"},
+      {"thesis", "contact", "cohesion_energy_density", "\"90000 J/m3\""},
+      {"thesis", "material.IN718", "density", "\"9187 kg/m3\""},
+  };
+  for (Value const& row : values) {
+    if (row.preset == preset && row.table == table && row.key == key) return std::string(row.value);
+  }
+  return "";
+}
+
+}  // namespace layerloop

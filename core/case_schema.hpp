@@ -1,0 +1,77 @@
+#pragma once
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/case.hpp"
+#include "core/units.hpp"
+
+namespace layerloop {
+
+/// Bounds of a number, in SI. Written wide enough for any real machine and narrow enough to catch a slip of 1000.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  enum class End { closed, open } lower = End::closed;
+
+  bool contains(double value) const {  // false for NaN
+    return (lower == End::open ? value > min : value >= min) && value <= max;
+  }
+};
+
+/// Who has to give a key that has no default.
+enum class Need {
+  always,
+  with_laser,     ///< unless machine.frozen_zone takes the laser's place
+  with_cohesion,  ///< unless contact.cohesion is "none"
+  never
+};
+
+template <class T>
+using Field = std::function<T&(Case&)>;
+
+/// A word out of a fixed list.
+struct Choice {
+  std::vector<std::string> words;
+  std::function<std::size_t(Case const&)> get;
+  std::function<void(Case&, std::size_t)> set;
+};
+
+/// Where a key's value goes; its type says what may be written.
+using Target =
+    std::variant<Field<double>, Field<std::optional<double>>, Field<std::vector<double>>,
+                 Field<std::optional<std::array<double, 2>>>, Field<std::complex<double>>, Field<PropertyTable>,
+                 Field<std::int64_t>, Field<std::uint64_t>, Field<bool>, Field<std::string>, Choice>;
+
+/// One row of the schema: all there is to know about one key of the case file. Parsing, checking, the resolved case and
+/// the page of keys come from it, so a new key is one row here and one member in core/case.hpp.
+struct CaseKey {
+  std::string table;  ///< "laser"; "material" stands for any [material.NAME]; an effect has rows of its own
+  std::string key;
+  Target target;
+  Dimension dimension = Dimension::none;
+  Range range;
+  Need need = Need::always;
+  std::string fallback;  ///< default as one would write it; "=contact.sliding_friction": that key's value; "": none
+  std::string sentence;
+};
+
+std::vector<CaseKey> const& case_schema();
+
+std::string name_of(CaseKey const& row);  ///< "laser.power"
+
+std::string shown_range(CaseKey const& row);  ///< "[1 um, 2 mm]"; empty without bounds
+
+/// The row of a key as it stands in a file, where `table` may be "material.IN718"; null when there is none.
+CaseKey const* find_key(std::string const& table, std::string const& key);
+
+/// Names of the tables, with "material.NAME" for any material.
+std::vector<std::string> const& case_tables();
+
+/// Default that a preset puts in the place of the row's own, as TOML; empty when it has none for the key.
+std::string preset_value(std::string const& preset, std::string const& table, std::string const& key);
+
+}  // namespace layerloop
