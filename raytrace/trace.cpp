@@ -115,21 +115,6 @@ void follow(Setting const& setting, Ray ray, double watts, Tally& tally) {
   tally.residual += watts * light.power;
 }
 
-/// Sorts by cell and adds up what fell into the same one, in the order in which it fell.
-void merge(std::vector<Deposit>& deposits) {
-  std::stable_sort(deposits.begin(), deposits.end(),
-                   [](Deposit const& a, Deposit const& b) { return a.cell < b.cell; });
-  std::size_t kept = 0;
-  for (std::size_t d = 0; d < deposits.size(); ++d) {
-    if (kept > 0 && deposits[kept - 1].cell == deposits[d].cell) {
-      deposits[kept - 1].watts += deposits[d].watts;
-    } else {
-      deposits[kept++] = deposits[d];
-    }
-  }
-  deposits.resize(kept);
-}
-
 template <class Light>
 std::vector<Tally> trace_blocks(Setting const& setting, Beam const& beam, std::int64_t replicate_rays) {
   TraceSettings const& settings = setting.settings;
@@ -148,7 +133,6 @@ std::vector<Tally> trace_blocks(Setting const& setting, Beam const& beam, std::i
       std::array<double, 2> const start = ray_start(beam, index, {u[0], u[1]});
       follow<Light>(setting, {{start[0], start[1], height}, -Vec3::UnitZ()}, watts, tally);
     }
-    merge(tally.deposits);
   }
   return tallies;
 }
@@ -169,25 +153,25 @@ double standard_error(std::vector<Tally> const& tallies, std::int64_t replicates
   return std::sqrt(squares / static_cast<double>(replicates * (replicates - 1)));
 }
 
-AbsorbedPower add_up(std::vector<Tally> const& tallies, double incident, std::int64_t rays) {
+AbsorbedPower add_up(std::vector<Tally> const& tallies, VoxelGrid const& grid, double incident, std::int64_t rays) {
   AbsorbedPower power;
   power.incident = incident;
   power.rays = rays;
   CompensatedSum absorbed, escaped, residual, outside;
-  std::vector<Deposit> deposits;
+  std::vector<CompensatedSum> cell_watts(static_cast<std::size_t>(grid.size()));
   std::int64_t hits = 0;
   for (Tally const& tally : tallies) {
-    deposits.insert(deposits.end(), tally.deposits.begin(), tally.deposits.end());
+    for (Deposit const& d : tally.deposits) cell_watts[static_cast<std::size_t>(d.cell)].add(d.watts);
     absorbed.add(tally.absorbed);
     escaped.add(tally.escaped);
     residual.add(tally.residual);
     outside.add(tally.outside_grid);
     hits += tally.hits;
   }
-  merge(deposits);
-  for (Deposit const& d : deposits) {
-    power.cell.push_back(d.cell);
-    power.watts.push_back(d.watts);
+  for (std::size_t c = 0; c < cell_watts.size(); ++c) {
+    if (cell_watts[c].value() == 0) continue;
+    power.cell.push_back(static_cast<std::int64_t>(c));
+    power.watts.push_back(cell_watts[c].value());
   }
   power.absorbed = absorbed.value();
   power.escaped = escaped.value();
@@ -234,9 +218,10 @@ void check_input(BedScene const& scene, Beam const& beam, Setting const& setting
 }
 
 void check_result(AbsorbedPower const& power, Beam const& beam, BedScene const& scene) {
-  double on_grid = power.outside_grid;
-  for (double const watts : power.watts) on_grid += watts;
-  double const error = std::max(ray_energy_error(power), std::abs(on_grid - power.absorbed) / power.incident);
+  CompensatedSum placed;
+  placed.add(power.outside_grid);
+  for (double const watts : power.watts) placed.add(watts);
+  double const error = std::max(ray_energy_error(power), std::abs(placed.value() - power.absorbed) / power.incident);
   if (!(error < 1e-12)) {
     throw PhysicsError(
         fmt::format("the ledger of the trace does not close (incident {:g} W, absorbed {:g} W, escaped {:g} W, "
@@ -269,7 +254,7 @@ AbsorbedPower trace(BedScene const& scene, Beam const& beam, std::span<std::comp
                                          ? trace_blocks<TrackedLight>(setting, beam, replicate_rays)
                                          : trace_blocks<AveragedLight>(setting, beam, replicate_rays);
 
-  AbsorbedPower power = add_up(tallies, beam.power, settings.replicates * replicate_rays);
+  AbsorbedPower power = add_up(tallies, grid, beam.power, settings.replicates * replicate_rays);
   power.standard_error =
       standard_error(tallies, settings.replicates, beam.power / static_cast<double>(settings.replicates));
   check_result(power, beam, scene);
