@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "thermal/enthalpy_table.hpp"
+#include "thermal/heat_cells.hpp"
+#include "thermal/heat_grid.hpp"
+
+namespace layerloop::thermal {
+
+/// A face between two bodies that touch without being one metal: grain on grain, grain on plate.
+struct ContactFace {
+  std::int64_t cell, neighbour;  ///< local; `cell` is an own cell
+  double conductivity;           ///< [W/(m K)], share of the face included; 0 once both cells have melted
+};
+
+/// A face through which heat leaves towards the far field.
+struct FarFace {
+  std::int64_t cell;  ///< local, own
+  double share;       ///< heat flow / (cell size * conductivity integral) [-]
+};
+
+/// A stretch of cells along x that holds metal, local indices [begin, end).
+struct Row {
+  std::int64_t begin, end;
+};
+
+/// Distances to the places that stay at ambient temperature [m]; infinite: adiabatic.
+struct FarField {
+  double sides = 0;  ///< beyond the x sides, and the y sides when SideY::far_field
+  double bottom = 0;
+};
+
+/// Heat conduction between the cells of one rank. Shapes: box.size() unless said otherwise.
+///
+/// Balance of cell c, in W/m (heat flow / cell size):
+///   sum_bulk share (Theta_n - Theta_c) + sum_contact k_contact (T_n - T_c) - sum_far share Theta_c.
+/// Bulk faces join cells of one body, or cells that have both been molten; they share what the emptier side fills.
+/// Contact faces join different bodies: a full cell of metal (k at the solidus) in series with one of
+/// `contact_conductivity`. Gas conducts nothing. Far faces: metal over half a cell plus the distance of the far field.
+/// Theta is taken from `EnthalpyTable`; every flow is evaluated alike from both sides, so heat is neither made nor
+/// lost.
+struct Conduction {
+  LocalBox box;
+  double cell = 0;                               ///< [m]
+  std::vector<float> share_x, share_y, share_z;  ///< of the face between a cell and its upper neighbour
+  std::vector<double> per_capacity;              ///< 1 / (fill cell^2) [1/m^2]; 0: no unknown
+  std::vector<float> fill;                       ///< as in HeatCells, neighbours' layer included
+  std::vector<ContactFace> contacts;             ///< ascending by cell, then by direction
+  std::vector<FarFace> far;
+  std::vector<Row> rows;  ///< own cells
+  std::vector<Row> rows_with_neighbours;
+
+  /// Joins a cell that has just melted with its molten neighbours. \param melted  flags of all local cells
+  void melt(std::int64_t cell, std::span<char const> melted);
+};
+
+Conduction make_conduction(HeatCells const& cells, LocalBox const& box, FarField const& far, double bulk_conductivity,
+                           double contact_conductivity);
+
+/// Largest explicit step [s] that keeps every cell between the temperatures of its neighbours, with all faces molten
+/// together and the table's largest diffusivity. \note not collective: the minimum over ranks is the caller's
+double stable_step(Conduction const& conduction, EnthalpyTable const& table);
+
+/// balance [W/m] of every own cell, from the enthalpy [J/m^3] and the conductivity integral [W/m] of all local cells.
+/// Returns the heat flow to the far field [W].
+double conduction_balance(Conduction const& conduction, EnthalpyTable const& table, std::span<double const> enthalpy,
+                          std::span<double const> integral, std::span<double> balance);
+
+}  // namespace layerloop::thermal

@@ -1,0 +1,21 @@
+#include "thermal/effects/surface_losses.hpp"
+
+#include <cmath>
+
+namespace layerloop::thermal {
+namespace {
+constexpr double stefan_boltzmann = 5.670374419e-8;  // [W/(m^2 K^4)]
+}
+
+SurfaceLosses::SurfaceLosses(Material const& material, double ambient, double strength)
+    : ambient_(ambient),
+      radiation_(strength * material.emissivity * stefan_boltzmann),
+      convection_(strength * convection) {}
+
+double SurfaceLosses::flux(double T) const {
+  return radiation_ * (std::pow(T, 4) - std::pow(ambient_, 4)) + convection_ * (T - ambient_);
+}
+
+double SurfaceLosses::slope(double T) const { return 4 * radiation_ * T * T * T + convection_; }
+
+}  // namespace layerloop::thermal

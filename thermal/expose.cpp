@@ -1,0 +1,126 @@
+#include "thermal/expose.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "thermal/effects/latent_heat.hpp"
+#include "thermal/effects/variable_conductivity.hpp"
+#include "thermal/exposure.hpp"
+
+namespace layerloop::thermal {
+namespace {
+
+void check(HeatSource const& source, VoxelGrid const& grid) {
+  if (source.time.size() != source.power.size() + 1 || !std::ranges::is_sorted(source.time)) {
+    throw InputError(fmt::format("heat source has {} times for {} intervals (one more than intervals, ascending)",
+                                 source.time.size(), source.power.size()));
+  }
+  for (AbsorbedPower const& power : source.power) {
+    bool const inside = std::ranges::all_of(power.cell, [&](std::int64_t c) { return c >= 0 && c < grid.size(); });
+    bool const finite = std::ranges::all_of(power.watts, [](double w) { return std::isfinite(w) && w >= 0; });
+    if (!inside || !finite || power.cell.size() != power.watts.size()) {
+      throw InputError("heat source has a cell outside the heat grid or a power that is negative or not finite");
+    }
+  }
+}
+
+/// Highest temperature that the model is trusted with [K].
+double hottest_allowed(Material const& material, bool evaporation) {
+  return evaporation ? material.boiling_point + 1000 : 1.5 * material.boiling_point;
+}
+
+SurfaceSink make_sink(HeatCells const& cells, HeatGrid const& grid, EnthalpyTable const& table,
+                      Material const& material, double ambient, Effects const& effects) {
+  SurfaceSink sink;
+  double const evaporation = effect_strength(effects, "evaporation"),
+               losses = effect_strength(effects, "surface_losses");
+  if (evaporation != 0) sink.evaporation.emplace(material, evaporation);
+  if (losses != 0) sink.losses.emplace(material, ambient, losses);
+  if (!sink.evaporation && !sink.losses) return sink;
+  sink.evaporation_onset = table.solidus();
+  VoxelGrid const& voxels = cells.grid;
+  for (std::int64_t c = 0; c < voxels.size(); ++c) {
+    double const fill = cells.fill[static_cast<std::size_t>(c)];
+    std::int64_t const own = grid.box().own(voxels.coordinates(c));
+    if (own < 0 || fill == 0) continue;
+    double const area = open_area(cells, c) * voxels.cell * voxels.cell;
+    if (area > 0) sink.cells.push_back({own, area, fill * voxels.cell_volume()});
+  }
+  return sink;
+}
+
+MeltRecord make_record(HeatSystem const& system, HeatCells const& cells, Communicator const& comm) {
+  MeltRecord record;
+  record.grid = cells.grid;
+  LocalBox const& box = system.conduction.box;
+  record.peak_temperature = to_temperature(cells, system.table, gather(cells, box, system.peak, comm));
+  std::vector<float> const time = gather(cells, box, system.time_above_liquidus, comm);
+  std::vector<float> const flags(system.melted.begin(), system.melted.end());
+  std::vector<float> const melted = gather(cells, box, flags, comm);
+  record.time_above_liquidus.assign(time.size(), 0);
+  record.melted.assign(time.size(), 0);
+  for (std::size_t c = 0; c < time.size(); ++c) {
+    if (!cells.metal[c]) continue;
+    auto const host = static_cast<std::size_t>(cells.host[c]);
+    record.time_above_liquidus[c] = time[host];
+    record.melted[c] = melted[host] > 0;
+  }
+  return record;
+}
+
+}  // namespace
+
+HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
+                   HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
+                   Report report) {
+  check(source, content.grid);
+  HeatCells const cells = make_heat_cells(content, side_y);
+  Material metal = material;
+  apply_latent_heat(metal, effect_strength(effects, "latent_heat"));
+  apply_variable_conductivity(metal, effect_strength(effects, "variable_conductivity"));
+  double const hottest = hottest_allowed(metal, effect_strength(effects, "evaporation") != 0);
+  EnthalpyTable const table(metal, settings.ambient_temperature, hottest);
+  double const isotherm = settings.pool_isotherm == "solidus" ? metal.solidus : metal.liquidus;
+  PoolObserver pools(cells, content.solid, source.tracks, isotherm, comm);
+
+  HeatGrid const grid(content.grid, side_y == SideY::periodic, comm);
+  HeatSystem system =
+      make_heat_system(table, grid,
+                       make_conduction(cells, grid.box(), {settings.margin, settings.substrate_depth},
+                                       metal.conductivity(metal.solidus), settings.powder_contact_conductivity),
+                       make_sink(cells, grid, table, metal, settings.ambient_temperature, effects));
+  Exposure exposure(system, cells, pools, settings.solver, hottest, comm);
+  Progress progress("heat", source.time.back() - source.time.front(), report == Report::progress && comm.is_root());
+  for (std::size_t i = 0; i < source.power.size(); ++i) {
+    double const begin = source.time[i], duration = source.time[i + 1] - begin;
+    if (duration == 0) continue;
+    if (source.power[i].cell.empty()) {
+      exposure.rest(duration, begin);
+    } else {
+      exposure.heat(source.power[i], duration, begin);
+    }
+    progress.update(source.time[i + 1] - source.time.front());
+  }
+  HeatOutcome outcome;
+  outcome.end_time = source.time.back() + exposure.freeze(source.time.back());
+  pools.finish(system);
+  exposure.write(outcome);
+  outcome.melt = make_record(system, cells, comm);
+  pools.write(outcome.melt);
+  outcome.peak_temperature = *std::ranges::max_element(outcome.melt.peak_temperature);
+  outcome.cells = cells.unknowns;
+  return outcome;
+}
+
+HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
+                   Report report) {
+  double const span = content.grid.cell * content.grid.n[1];
+  bool const periodic = std::abs(span - settings.machine.width) < 0.01 * content.grid.cell;
+  return expose(content, source, settings.material, settings.heat, settings.effects,
+                periodic ? SideY::periodic : SideY::far_field, comm, report);
+}
+
+}  // namespace layerloop::thermal

@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+
+#include "core/case.hpp"
+#include "core/cell_content.hpp"
+#include "core/communicator.hpp"
+#include "core/heat_source.hpp"
+#include "core/melt_record.hpp"
+#include "thermal/effects/effect_strength.hpp"
+#include "thermal/heat_cells.hpp"
+
+namespace layerloop::thermal {
+
+/// What one exposure did, the same on every rank. SI.
+struct HeatOutcome {
+  MeltRecord melt;
+  double heat_in = 0;                     ///< absorbed by metal [J]
+  double heat_stored = 0;                 ///< above ambient at the end [J]
+  double heat_out = 0;                    ///< far field, vapour, radiation and convection [J]
+  double heat_evaporated = 0;             ///< the vapour's part of `heat_out` [J]
+  double heat_energy_relative_error = 0;  ///< largest |stored - in + out| / in seen at any check
+  double moved_power_share = 0;  ///< of `heat_in` that landed in cells without an unknown and went to their host
+  double mass_evaporated = 0;    ///< [kg]
+  double peak_temperature = 0;   ///< [K]
+  double end_time = 0;           ///< when the last cell froze, or the source ended if that is later [s]
+  std::int64_t explicit_steps = 0, implicit_steps = 0;
+  std::int64_t cells = 0;  ///< with an unknown
+};
+
+enum class Report { progress, silent };
+
+/// Heats the cells with the source, starting from ambient, until the source has ended and nothing is above the solidus.
+///
+/// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `latent_heat`, `variable_conductivity`,
+/// `evaporation` and `surface_losses` as switched on. Far field: at ambient, heat.substrate_depth below the bottom and
+/// heat.margin beyond the sides (the distance of the heated patch, which is exact for a steady point source on a half
+/// space). HeatSolver::automatic steps explicitly while the beam is on and shortly after, then implicitly with growing
+/// steps.
+///
+/// \throws InputError    arrays and times that do not fit, a track that does not run along x (before any computing)
+/// \throws PhysicsError  NaN, a temperature beyond the model, heat that does not balance to 1e-9
+/// \throws StoppedBySignal
+/// \note Collective. Explicit steps give the same bits for any number of ranks and threads; implicit ones agree to the
+/// solver's tolerance, 1e-12.
+HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
+                   HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
+                   Report report);
+
+/// The same from a case: y periodic when the grid spans the machine's width, far field otherwise.
+HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
+                   Report report);
+
+}  // namespace layerloop::thermal

@@ -1,0 +1,146 @@
+#include "thermal/exposure.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/compensated_sum.hpp"
+#include "core/error.hpp"
+
+namespace layerloop::thermal {
+namespace {
+
+constexpr double stability_margin = 0.95;
+/// Implicit steps, in units of the stable explicit one: with the beam on, and the first after it.
+constexpr double implicit_stride = 4;
+/// Growth with the beam off: the next step is this share of the time since then (temperatures fall as a power of time).
+constexpr double implicit_growth = 0.1;
+/// Automatic choice: an implicit step costs about as much as this many explicit ones.
+constexpr double implicit_price = 300;
+constexpr std::int64_t steps_between_checks = 50;
+
+}  // namespace
+
+Exposure::Exposure(HeatSystem& system, HeatCells const& cells, PoolObserver& pools, HeatSolver solver,
+                   double hottest_allowed, Communicator const& comm)
+    : system_(system),
+      cells_(cells),
+      pools_(pools),
+      solver_(solver),
+      hottest_allowed_(hottest_allowed),
+      comm_(comm),
+      stable_step_(comm.min(stability_margin * stable_step(system.conduction, system.table))) {}
+
+void Exposure::heat(AbsorbedPower const& power, double duration, double begin) {
+  std::vector<CellPower> source;
+  CompensatedSum watts, moved;
+  for (std::size_t i = 0; i < power.cell.size(); ++i) {
+    std::int64_t const host = cells_.host[static_cast<std::size_t>(power.cell[i])];
+    watts.add(power.watts[i]);
+    if (host != power.cell[i]) moved.add(power.watts[i]);
+    std::int64_t const own = system_.conduction.box.own(cells_.grid.coordinates(host));
+    if (own >= 0) source.push_back({own, power.watts[i]});
+  }
+  heat_in_ += watts.value() * duration;
+  moved_ += moved.value() * duration;
+  bool const implicit = solver_ == HeatSolver::implicit_steps;
+  double const longest = implicit ? implicit_stride * stable_step_ : stable_step_;
+  auto const count = static_cast<std::int64_t>(std::ceil(duration / longest));
+  if (!implicit) {
+    explicit_steps(source, duration, begin, count);
+  } else {
+    double const dt = duration / static_cast<double>(count);
+    for (std::int64_t i = 0; i < count; ++i) implicit_step(source, dt, begin + static_cast<double>(i + 1) * dt);
+  }
+  check();
+}
+
+void Exposure::rest(double duration, double begin) { relax(duration, begin, false); }
+
+double Exposure::freeze(double begin) { return relax(std::numeric_limits<double>::infinity(), begin, true); }
+
+double Exposure::relax(double duration, double begin, bool until_frozen) {
+  double elapsed = 0, hottest = check();
+  bool const long_enough = solver_ == HeatSolver::automatic && duration > 8 * implicit_price * stable_step_;
+  while (elapsed < duration) {
+    if (until_frozen && hottest < system_.table.solidus()) break;
+    // 1000 steps into the relaxation, the next implicit step spans 100 explicit ones and the one after it more.
+    bool const implicit =
+        solver_ == HeatSolver::implicit_steps || (long_enough && elapsed > 4 * implicit_price * stable_step_);
+    double span = implicit ? std::max(implicit_stride * stable_step_, implicit_growth * elapsed)
+                           : static_cast<double>(steps_between_checks) * stable_step_;
+    span = std::min(span, duration - elapsed);
+    if (implicit) {
+      implicit_step({}, span, begin + elapsed + span);
+    } else {
+      explicit_steps({}, span, begin + elapsed, static_cast<std::int64_t>(std::ceil(span / stable_step_ - 1e-9)));
+    }
+    elapsed = duration - elapsed <= span ? duration : elapsed + span;
+    double const now = check();
+    if (until_frozen && now >= hottest * (1 - 1e-9) && at_rest(now)) break;
+    hottest = now;
+  }
+  return elapsed;
+}
+
+bool Exposure::at_rest(double hottest) {
+  return comm_.max(largest_imbalance(system_)) < 1e-6 * system_.table.conductivity_integral(hottest);
+}
+
+void Exposure::explicit_steps(std::vector<CellPower> const& source, double duration, double begin, std::int64_t count) {
+  double const dt = duration / static_cast<double>(count);
+  for (std::int64_t i = 0; i < count; ++i) {
+    explicit_step(system_, source, dt);
+    pools_.observe(system_, begin + static_cast<double>(i + 1) * dt);
+  }
+  explicit_count_ += count;
+}
+
+void Exposure::implicit_step(std::vector<CellPower> const& source, double dt, double end) {
+  if (!implicit_) implicit_ = std::make_unique<ImplicitSolver>(system_);
+  implicit_->step(source, dt);
+  pools_.observe(system_, end);
+  ++implicit_count_;
+}
+
+double Exposure::check() {
+  if (comm_.any(stop_requested())) throw StoppedBySignal("the heat solver was asked to stop");
+  CompensatedSum vapour, lost;
+  for (OpenCell const& open : system_.sink.cells) vapour.add(open.evaporated), lost.add(open.lost);
+  evaporated_ = comm_.sum(vapour.value());
+  out_ = evaporated_ + comm_.sum(lost.value() + system_.heat_to_far_field);
+  stored_ = comm_.sum(stored_heat(system_));
+  if (!std::isfinite(stored_)) {
+    throw PhysicsError("the temperature field is not finite (NaN) check the material's tables and the absorbed power");
+  }
+  double const hottest = comm_.max(thermal::hottest(system_)), T = system_.table.temperature(hottest);
+  if (T > hottest_allowed_) {
+    throw PhysicsError(
+        fmt::format("the metal reaches {:.0f} K (the model ends at {:.0f} K: real metal would have boiled away) "
+                    "{}lower laser.power, or "
+                    "raise laser.spot_diameter or scan.scan_speed",
+                    T, hottest_allowed_, system_.sink.evaporation ? "" : "enable effects.evaporation, "));
+  }
+  if (heat_in_ > 0) error_ = std::max(error_, std::abs(stored_ - heat_in_ + out_) / heat_in_);
+  if (error_ > 1e-9) {
+    throw PhysicsError(
+        fmt::format("heat does not balance (relative error {:.3g}) report this as a bug with the case file", error_));
+  }
+  return hottest;
+}
+
+void Exposure::write(HeatOutcome& outcome) const {
+  outcome.heat_in = heat_in_;
+  outcome.heat_stored = stored_;
+  outcome.heat_out = out_;
+  outcome.heat_evaporated = evaporated_;
+  outcome.heat_energy_relative_error = error_;
+  outcome.moved_power_share = heat_in_ > 0 ? moved_ / heat_in_ : 0;
+  if (system_.sink.evaporation)
+    outcome.mass_evaporated = evaporated_ / system_.sink.evaporation->heat_of_vaporisation();
+  outcome.explicit_steps = explicit_count_;
+  outcome.implicit_steps = implicit_count_;
+}
+
+}  // namespace layerloop::thermal

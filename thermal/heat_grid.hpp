@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/communicator.hpp"
+#include "core/voxel_grid.hpp"
+
+struct _p_DM;
+struct _p_Vec;
+
+namespace layerloop::thermal {
+
+/// The cells of one rank: a box of the grid, stored with one layer of neighbours all around (x fastest).
+/// Local coordinates run from 0 to n - 1; -1 and n are the neighbours' layer.
+struct LocalBox {
+  std::array<std::int32_t, 3> begin{};  ///< first own cell in the grid
+  std::array<std::int32_t, 3> n{};      ///< own cells
+
+  std::int64_t stride_y() const { return n[0] + 2; }
+  std::int64_t stride_z() const { return std::int64_t{n[0] + 2} * (n[1] + 2); }
+  std::int64_t size() const { return stride_z() * (n[2] + 2); }
+  std::int64_t index(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    return (i + 1) + stride_y() * (j + 1) + stride_z() * (k + 1);
+  }
+  /// Local index of a cell of the grid; -1 when another rank owns it.
+  std::int64_t own(std::array<std::int32_t, 3> const& cell) const;
+};
+
+/// The grid shared out over the ranks by a PETSc DMDA (one unknown, star stencil, columns along z stay whole when there
+/// are enough of them: the gas above the bed would unbalance a cut).
+class HeatGrid {
+ public:
+  HeatGrid(VoxelGrid const& grid, bool periodic_y, Communicator const& comm);
+  ~HeatGrid();
+  HeatGrid(HeatGrid const&) = delete;
+  HeatGrid& operator=(HeatGrid const&) = delete;
+
+  LocalBox const& box() const { return box_; }
+  _p_DM* petsc() const { return da_; }
+
+  /// Refreshes the neighbours' layer from its owners. Shape: box().size(). \note Collective
+  void exchange(std::vector<double>& values) const;
+
+ private:
+  _p_DM* da_ = nullptr;
+  _p_Vec* local_ = nullptr;
+  LocalBox box_;
+};
+
+}  // namespace layerloop::thermal

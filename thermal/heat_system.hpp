@@ -1,0 +1,54 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "thermal/conduction.hpp"
+#include "thermal/enthalpy_table.hpp"
+#include "thermal/heat_grid.hpp"
+#include "thermal/surface_sink.hpp"
+
+namespace layerloop::thermal {
+
+/// Power into one own cell of a rank.
+struct CellPower {
+  std::int64_t cell;  ///< local
+  double watts;
+};
+
+/// Everything that one rank steps through time. Shapes of the fields: grid.box().size(), x fastest.
+struct HeatSystem {
+  EnthalpyTable const& table;
+  HeatGrid const& grid;
+  Conduction conduction;
+  SurfaceSink sink;
+
+  std::vector<double> enthalpy;            ///< per volume of metal, zero at ambient [J/m^3]
+  std::vector<double> integral;            ///< Theta(enthalpy) [W/m]
+  std::vector<double> balance;             ///< scratch [W/m]
+  std::vector<float> peak;                 ///< largest enthalpy since the last reset [J/m^3]
+  std::vector<float> time_above_liquidus;  ///< [s]
+  std::vector<char> melted;                ///< 1: has been at the liquidus
+  double heat_to_far_field = 0;            ///< [J] so far, this rank
+
+  double metal_volume(std::int64_t cell) const { return conduction.cell / conduction.per_capacity[cell]; }
+};
+
+HeatSystem make_heat_system(EnthalpyTable const& table, HeatGrid const& grid, Conduction conduction, SurfaceSink sink);
+
+/// After a step: fetches the neighbours' layer, looks Theta up, keeps peaks and times, joins what has melted.
+/// \note Collective
+void finish_step(HeatSystem& system, double dt);
+
+/// One forward Euler step: conduction and source, then the sinks. \pre dt <= stable_step \note Collective
+void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt);
+
+/// Heat above ambient in this rank's cells [J].
+double stored_heat(HeatSystem const& system);
+
+/// Largest |balance| of this rank's cells now, without source and sinks [W/m].
+double largest_imbalance(HeatSystem& system);
+
+/// Largest enthalpy of this rank's cells now [J/m^3]; NaN when any cell is.
+double hottest(HeatSystem const& system);
+
+}  // namespace layerloop::thermal

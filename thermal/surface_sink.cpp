@@ -1,0 +1,68 @@
+#include "thermal/surface_sink.hpp"
+
+#include <cmath>
+
+namespace layerloop::thermal {
+
+SurfaceSink::Flux SurfaceSink::flux(EnthalpyTable const& table, double h) const {
+  Flux flux;
+  double const T = table.temperature(h);
+  if (evaporation && h > evaporation_onset) {
+    flux.evaporation = evaporation->flux(T);
+    flux.slope += evaporation->slope(T, flux.evaporation);
+  }
+  if (losses) {
+    flux.losses = losses->flux(T);
+    flux.slope += losses->slope(T);
+  }
+  return flux;
+}
+
+namespace {
+
+/// Root of h + rate q(T(h)) = start. \param rate  dt area / volume [s/m]
+double drained(SurfaceSink const& sink, EnthalpyTable const& table, double rate, double start) {
+  double low = start - rate * std::max(0.0, sink.flux(table, start).total()), high = start;
+  double h = start;
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    auto const flux = sink.flux(table, h);
+    double const excess = h + rate * flux.total() - start;
+    if (std::abs(excess) <= 1e-12 * std::abs(start)) break;
+    (excess > 0 ? high : low) = h;
+    h -= excess / (1 + rate * flux.slope * table.temperature_slope(h));
+    if (!(h > low && h < high)) h = 0.5 * (low + high);
+    if (high - low <= 1e-14 * std::abs(start)) break;
+  }
+  return h;
+}
+
+void book(OpenCell& open, SurfaceSink::Flux const& flux, double energy) {
+  if (energy == 0) return;
+  double const vapour = energy * flux.evaporation / flux.total();
+  open.evaporated += vapour;
+  open.lost += energy - vapour;
+}
+
+}  // namespace
+
+void drain(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double> enthalpy) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < sink.cells.size(); ++i) {
+    OpenCell& open = sink.cells[i];
+    double& h = enthalpy[static_cast<std::size_t>(open.cell)];
+    if (sink.flux(table, h).total() == 0) continue;
+    double const before = h;
+    h = drained(sink, table, dt * open.area / open.metal_volume, before);
+    book(open, sink.flux(table, h), (before - h) * open.metal_volume);
+  }
+}
+
+void book(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double const> enthalpy) {
+  for (OpenCell& open : sink.cells) {
+    auto const flux = sink.flux(table, enthalpy[static_cast<std::size_t>(open.cell)]);
+    open.evaporated += dt * open.area * flux.evaporation;
+    open.lost += dt * open.area * flux.losses;
+  }
+}
+
+}  // namespace layerloop::thermal
