@@ -47,6 +47,46 @@ TEST(BedScene, ReflectedRaysNeverMeetTheirOwnGrain) {
   EXPECT_EQ(own, 0);
 }
 
+TEST(BedScene, OverlappingGrainsAreSeenAsTheirUnion) {
+  PowderBed bed;
+  add_grain(bed, 0, 0, 0, 1);
+  add_grain(bed, 1.9, 0, 0, 1);
+  BedScene const scene(bed, {});
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    Ray ray{{0.95, 0, 0}, random_direction(i)};
+    ray.origin -= 5 * ray.direction;
+    ray.origin += 0.3 * random_direction(100000 + i);
+    for (Hit hit; (hit = scene.first_hit(ray)).target == Target::grain; ray.origin = hit.point) {
+      EXPECT_GE((hit.point - bed.position(static_cast<std::size_t>(1 - hit.row))).norm(), 1 - 1e-12);
+      ray.direction = (ray.direction - 2 * ray.direction.dot(hit.normal) * hit.normal).normalized();
+    }
+  }
+}
+
+TEST(BedScene, AMeshOfManyTrianglesDoesNotLeak) {
+  // Mirrors above a black grain as large as the tile: whatever is absorbed has slipped between two triangles.
+  TriangleSurface waves;
+  int const n = 120;
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i)
+      waves.vertices.push_back({0.01 * i - 0.1, 0.01 * j - 0.1, 0.05 * std::sin(0.9 * i) * std::cos(1.1 * j)});
+  }
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      int const a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      waves.triangles.push_back({a, b, d});
+      waves.triangles.push_back({a, d, c});
+    }
+  }
+  PowderBed bed;
+  bed.add(0, {0.5, 0.5, -3}, 2.5, 1);
+  BedScene const scene(bed, waves);
+  std::array const metals{std::complex<double>(1e-6, 1e3), black};
+  AbsorbedPower const power = trace(scene, uniform_light({1, 1}), metals, 0, one_cell(scene), {.rays = 200000});
+  EXPECT_GT(power.mean_bounces, 1.5);
+  EXPECT_LT(power.absorptivity, 2e-5);
+}
+
 TEST(BedScene, TrianglesAreSeenFromOutsideOnly) {
   BedScene const scene({}, flat_floor(0, 1, 0, 1, 0.25));
   Hit const above = scene.first_hit({{0.3, 0.3, 1}, Vec3(0.1, 0, -1).normalized()});
