@@ -218,9 +218,11 @@ class CaseChecks {
       double const needed = static_cast<double>(scan.tracks - 1) * scan.hatch_spacing + spot;
       double const excess = needed - c_.machine.width;
       if (excess > 1e-12) {
-        report(scan.tracks > 1 ? "scan.hatch_spacing" : "laser.spot_diameter",
-               "is too large (beam off the bed: {} tracks and the spot need {}, machine.width is {}) narrow them by {}",
-               scan.tracks, length(needed), length(c_.machine.width), length(excess));
+        bool const hatch = scan.tracks > 1;
+        report(hatch ? "scan.hatch_spacing" : "laser.spot_diameter",
+               "= {} (beam off the bed: {} tracks and the spot need {}, machine.width is {}) narrow them by {}",
+               length(hatch ? scan.hatch_spacing : c_.laser.spot_diameter), scan.tracks, length(needed),
+               length(c_.machine.width), length(excess));
       }
     }
   }
@@ -262,10 +264,26 @@ class CaseChecks {
              "= {} (must be at most laser.spot_diameter, {}, or parts of the track are not hit)",
              length(c_.optics.position_spacing), length(c_.laser.spot_diameter));
     }
+    wavelength();
     if (!c_.laser.absorptivity && known({"material.refractive_index", "optics.refractive_index"}) &&
         c_.material.refractive_index.real() <= 0) {
       report(c_.optics.refractive_index ? "optics.refractive_index" : "material.refractive_index",
              "has n = {:g} (must be above 0)", c_.material.refractive_index.real());
+    }
+  }
+
+  /// The built-in indices are those at 1.07 um (1.03 to 1.09 um differ by less than their spread).
+  void wavelength() const {
+    auto const built_in = built_in_materials().find(c_.material.name);
+    if (c_.laser.absorptivity || built_in == built_in_materials().end() ||
+        !known({"laser.wavelength", "material.refractive_index"})) {
+      return;
+    }
+    bool const own_index = c_.material.refractive_index != built_in->second.refractive_index;
+    if (!own_index && std::abs(c_.laser.wavelength - 1.06e-6) > 0.03e-6 + 1e-12) {
+      report("laser.wavelength",
+             "= {} (the built-in refractive index of {} is that at 1.07 um) give optics.refractive_index",
+             length(c_.laser.wavelength), c_.material.name);
     }
   }
 

@@ -113,6 +113,7 @@ class CaseReader {
     std::string const belongs = tables_with(entry.key);
     if (is_table(entry.key)) {
       report(entry.place, fmt::format("\"{0}\" is a table (write [{0}] on a line of its own)", entry.key));
+      meant_tables_.insert(entry.key);
     } else {
       report(entry.place, fmt::format("unknown key \"{}\" outside of any table{}", entry.key,
                                       belongs.empty() ? "" : "; it belongs in " + belongs));
@@ -200,18 +201,10 @@ class CaseReader {
       case_.material.refractive_index = {index->at(0), index->at(1)};
   }
 
+  /// What a misspelt preset or frozen zone would have supplied is not asked for.
   bool needed(CaseKey const& row) const {
-    switch (row.need) {
-      case Need::always:
-        return true;
-      case Need::with_laser:
-        return !written_.contains("machine.frozen_zone");
-      case Need::with_cohesion:
-        return case_.contact.cohesion != Cohesion::none;
-      case Need::never:
-        return false;
-    }
-    return false;
+    bool const laser_unclear = row.need == Need::with_laser && unsound_.contains("machine.frozen_zone");
+    return is_needed(row, case_) && !laser_unclear && !unsound_.contains("case.preset");
   }
 
   void report_missing() {

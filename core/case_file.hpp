@@ -8,8 +8,8 @@
 namespace layerloop {
 
 /// Reads and checks a case. `overrides` are "table.key=value" (the --set options), applied after the file.
-/// \throws InputError with every fault of the file at once, one a line: "case.toml:12:1: unknown key "powr" in [laser]; did you mean "power"?"
-/// \throws FileError  cannot be opened
+/// \throws InputError with every fault of the file at once, one a line: "case.toml:12:1: unknown key "powr" in [laser];
+/// did you mean "power"?" \throws FileError  cannot be opened
 Case read_case(std::filesystem::path const& path, std::vector<std::string> const& overrides);
 
 /// The case as TOML with every key, in SI, defaults filled in: reading it again gives the same case.

@@ -46,7 +46,7 @@ std::string resolved_toml(Case const& checked) {
   std::string text, table;
   for (CaseKey const& row : case_schema()) {
     std::optional<std::string> const value = stored(row, checked);
-    bool const never_given = row.need != Need::always && row.fallback.empty() && value == stored(row, Case{});
+    bool const never_given = !is_needed(row, checked) && row.fallback.empty() && value == stored(row, Case{});
     if (!value || never_given) continue;
     if (row.table != table) {
       table = row.table;

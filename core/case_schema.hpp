@@ -61,6 +61,9 @@ struct CaseKey {
 
 std::vector<CaseKey> const& case_schema();
 
+/// Whether a case has to give the key, unless it has a default.
+bool is_needed(CaseKey const& row, Case const& c);
+
 std::string name_of(CaseKey const& row);  ///< "laser.power"
 
 std::string shown_range(CaseKey const& row);  ///< "[1 um, 2 mm]"; empty without bounds

@@ -67,9 +67,9 @@ class Store {
     if (auto const* const whole = std::get_if<std::int64_t>(&value.content)) return static_cast<double>(*whole);
     if (auto const* const real = std::get_if<double>(&value.content)) return *real;
     auto const* const written = std::get_if<std::string>(&value.content);
-    std::string const unit(si_unit(dimension));
+    std::string_view const unit = si_unit(dimension);
     if (!written)
-      refuse(unit.empty() ? "must be a number" : fmt::format("must be a number or text such as \"1.5 {}\"", unit));
+      refuse(unit.empty() ? "must be a number" : fmt::format("must be a number in {} or text with a unit", unit));
     try {
       return parse_quantity(*written, dimension);
     } catch (InputError const& fault) {

@@ -95,7 +95,8 @@ toml::table parse_guarded(std::string_view text) {
   toml::parse_result result = toml::parse(Guard(text).cleaned());
   if (!result) {
     toml::parse_error const& error = result.error();
-    throw SyntaxFault{{place_of(error.source()), std::string(error.description())}};
+    std::string_view const what = error.description();
+    throw SyntaxFault{{place_of(error.source()), std::string(what.substr(0, what.find(" (TOML_")))}};
   }
   return std::move(result).table();
 }
@@ -169,7 +170,8 @@ TomlValue parse_value(std::string_view text) {
 TomlEntry parse_override(std::string const& option) {
   Place const place{0, 0, "--set " + option};
   std::size_t const equals = option.find('=');
-  std::string const name = option.substr(0, equals);
+  std::string name = option.substr(0, equals);
+  std::erase(name, ' ');
   std::size_t const dot = name.rfind('.');
   bool const named = dot != std::string::npos && dot > 0 && dot + 1 < name.size();
   if (equals == std::string::npos || !named || option.find('\n') != std::string::npos) {

@@ -170,13 +170,12 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   std::string_view rest = text;
   while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
   if (rest.size() > 1 && rest.front() == '+' && rest[1] != '-') rest.remove_prefix(1);
-  double number = 0;
+  long double number = 0;
   auto const [end, fault] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-  if (fault != std::errc{} || !std::isfinite(number)) {
-    std::string_view const unit = si_unit(dimension);
-    throw InputError(fmt::format("\"{}\" is not {} (must be a number{}, for example \"1.5{}{}\")", text,
-                                 dimension == D::none ? "a number" : "a quantity", unit.empty() ? "" : " and a unit",
-                                 unit.empty() ? "" : " ", unit));
+  if (fault != std::errc{} || !std::isfinite(static_cast<double>(number))) {
+    throw InputError(fmt::format("\"{}\" is not a number{} (must be {}{})", text,
+                                 dimension == D::none ? "" : " with a unit", name(dimension),
+                                 dimension == D::none ? "" : fmt::format(": {}", fmt::join(symbols(dimension), ", "))));
   }
   std::string const symbol = without_blanks(rest.substr(static_cast<std::size_t>(end - rest.data())));
   Unit const* const unit = find_unit(symbol, dimension);
@@ -184,7 +183,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   return static_cast<double>(unit->factor * number + unit->offset);
 }
 
-std::string format_quantity(double si_value, Dimension dimension) {
+std::string format_quantity(double value, Dimension dimension) {
   struct Shown {
     Dimension dimension;
     std::vector<std::string_view> symbols;  // ascending
@@ -195,14 +194,16 @@ std::string format_quantity(double si_value, Dimension dimension) {
       {D::pressure, {"Pa", "kPa", "MPa", "GPa"}}};
   Unit const* chosen = find_unit(si_unit(dimension), dimension);
   for (Shown const& shown : preferred) {
-    if (shown.dimension != dimension || si_value == 0) continue;
+    if (shown.dimension != dimension || value == 0 || !std::isfinite(value)) continue;
     chosen = find_unit(shown.symbols.front(), dimension);
     for (std::string_view const symbol : shown.symbols) {
       Unit const* const unit = find_unit(symbol, dimension);
-      if (std::abs(si_value) >= unit->factor * (1 - 1e-9L)) chosen = unit;
+      if (std::abs(value) >= unit->factor * (1 - 1e-9L)) chosen = unit;
     }
   }
-  std::string const number = fmt::format("{:.4g}", static_cast<double>(si_value / chosen->factor));
+  auto const shown_value = static_cast<double>(value / chosen->factor);
+  bool const long_number = std::abs(shown_value) >= 1e4 && std::abs(shown_value) < 1e6;  // 25000 rather than 2.5e+04
+  std::string const number = fmt::format("{:.{}g}", shown_value, long_number ? 6 : 4);
   return chosen->symbol.empty() ? number : fmt::format("{} {}", number, chosen->symbol);
 }
 

@@ -16,7 +16,7 @@ std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty fo
 /// \throws InputError when the text is not a number and a unit, or the unit measures something else; names units that fit
 double parse_quantity(std::string_view text, Dimension dimension);
 
-/// A value for people, in the unit they would use: 3.0e-5 m -> "30 um".
-std::string format_quantity(double si_value, Dimension dimension);
+/// An SI value for people, in the unit they would use: 3.0e-5 m -> "30 um".
+std::string format_quantity(double value, Dimension dimension);
 
 }  // namespace layerloop
