@@ -34,10 +34,10 @@ class CaseChecks {
     machine();
     frozen_zone();
     material();
+    cells();
     if (c_.machine.frozen_zone) return;
     scan();
-    beam_on_bed();
-    heat_grid();
+    beam();
     optics();
   }
 
@@ -200,10 +200,14 @@ class CaseChecks {
   }
 
   /// The patch is centred on the deposition zone; tracks run along x, y is periodic.
-  void beam_on_bed() const {
+  void beam() const {
     ScanSettings const& scan = c_.scan;
     if (!known({"laser.spot_diameter", "laser.spot_definition"})) return;
     double const spot = 2 * c_.laser.spot_radius();
+    if (known({"heat.cell_size"}) && c_.heat.cell_size > 0.5 * spot) {
+      report("heat.cell_size", "= {} (must resolve the beam: at most its 1/e2 radius, {})", length(c_.heat.cell_size),
+             length(0.5 * spot));
+    }
     if (known({"scan.track_length", "machine.deposition_length"})) {
       double const excess = scan.track_length + spot - c_.machine.deposition_length;
       if (excess > 1e-12) {
@@ -227,33 +231,26 @@ class CaseChecks {
     }
   }
 
-  void heat_grid() const {
-    double const cell = c_.heat.cell_size;
+  /// The lattice that holds the part and the heat grid: periodic in y, from end to end of the deposition zone in x.
+  void cells() const {
     MachineSettings const& m = c_.machine;
+    double const cell = c_.heat.cell_size;
     if (!known({"heat.cell_size"})) return;
-    struct Extent {
-      char const* key;
-      double value;
-    };
-    for (auto const& [key, value] :
-         {Extent{"machine.width", m.width}, Extent{"machine.deposition_length", m.deposition_length},
-          Extent{"machine.layer_thickness", m.layer_thickness},
-          Extent{"heat.substrate_depth", c_.heat.substrate_depth}}) {
-      if (!known({key}) || divides(cell, value)) continue;
-      report("heat.cell_size", "= {} (must divide {} = {})", length(cell), key, length(value));
+    if (known({"machine.width"}) && !divides(cell, m.width)) {
+      report("heat.cell_size", "= {} (must divide machine.width = {})", length(cell), length(m.width));
     }
-    if (known({"laser.spot_diameter", "laser.spot_definition"}) && cell > c_.laser.spot_radius()) {
-      report("heat.cell_size", "= {} (must resolve the beam: at most its 1/e2 radius, {})", length(cell),
-             length(c_.laser.spot_radius()));
+    if (!known({"machine.deposition_length"})) return;
+    if (!divides(cell, m.deposition_length)) {
+      report("heat.cell_size", "= {} (must divide machine.deposition_length = {})", length(cell),
+             length(m.deposition_length));
     }
-    if (!known(
-            {"scan.track_length", "heat.margin", "heat.substrate_depth", "machine.width", "machine.deposition_length"}))
-      return;
-    double const extent = std::min(c_.scan.track_length + 2 * c_.heat.margin, m.deposition_length);
-    double const cells = extent * m.width * (c_.heat.substrate_depth + 2 * m.layer_thickness) / std::pow(cell, 3);
+    if (!known({"machine.width", "machine.layer_thickness", "heat.substrate_depth", "run.layers"})) return;
+    double const height = c_.heat.substrate_depth + static_cast<double>(c_.run.layers) * m.layer_thickness;
+    double const cells = m.deposition_length * m.width * height / std::pow(cell, 3);
     if (cells > 2e9) {
-      report("heat.cell_size", "= {} (the grid would have {:.2g} cells, at most 2e9 can be numbered) coarsen it",
-             length(cell), cells);
+      report("heat.cell_size",
+             "= {} (plate and layers would have {:.2g} cells, at most 2e9 can be numbered) coarsen it", length(cell),
+             cells);
     }
   }
 

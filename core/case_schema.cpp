@@ -175,10 +175,10 @@ std::vector<CaseKey> heat_and_run_rows() {
   constexpr auto heat = &Case::heat;
   constexpr auto run = &Case::run;
   return {
-      {"heat", "cell_size", at<heat, &H::cell_size>, D::length, {2e-7, 1e-4}, Need::with_laser, "",
-       "Edge of the cubic cells; divides width, deposition length and layer thickness."},
+      {"heat", "cell_size", at<heat, &H::cell_size>, D::length, {2e-7, 1e-4}, Need::always, "",
+       "Edge of the cubic cells of heat grid and part; divides width and deposition length."},
       {"heat", "substrate_depth", at<heat, &H::substrate_depth>, D::length, {5e-6, 0.01}, Need::never, "\"120 um\"",
-       "Depth of the plate that the grid holds."},
+       "Depth of the plate that the grid holds, rounded up to whole cells."},
       {"heat", "margin", at<heat, &H::margin>, D::length, {0, 0.01}, Need::never, "\"50 um\"",
        "Distance from the scanned patch to the sides of the grid."},
       {"heat", "ambient_temperature", at<heat, &H::ambient_temperature>, D::temperature, {1, 2000}, Need::never, "300",
@@ -233,17 +233,19 @@ std::vector<CaseKey> material_rows() {
 
 // clang-format on
 
-/// The effects that the stages carry.
+/// The effects that the stages carry. Each gives its largest strength: beyond it the model would lose its meaning.
 struct Effect {
-  std::string name, enabled, sentence;
+  std::string name, enabled;
+  double largest_strength;
+  std::string sentence;
 };
 
 std::vector<Effect> const& effects() {
   static std::vector<Effect> const rows = {
-      {"latent_heat", "true", "Latent heat of fusion between solidus and liquidus."},
-      {"variable_conductivity", "true", "Conductivity over temperature; off: its value at ambient temperature."},
-      {"evaporation", "false", "Heat carried off by metal vapour (Hertz-Knudsen-Langmuir)."},
-      {"surface_losses", "false", "Radiation and convection from the free surface."},
+      {"latent_heat", "true", 2, "Latent heat of fusion between solidus and liquidus."},
+      {"variable_conductivity", "true", 1, "Conductivity over temperature; off: its value at the solidus."},
+      {"evaporation", "false", 10, "Heat carried off by metal vapour (Hertz-Knudsen)."},
+      {"surface_losses", "false", 100, "Radiation and convection from metal that faces gas."},
   };
   return rows;
 }
@@ -255,14 +257,9 @@ std::vector<CaseKey> effect_rows() {
     auto const strength = [name = effect.name](Case& into) -> double& { return into.effects[name].strength; };
     std::string const table = "effects." + effect.name;
     rows.push_back({table, "enabled", enabled, D::none, {}, Need::never, effect.enabled, effect.sentence});
-    rows.push_back({table,
-                    "strength",
-                    strength,
-                    D::none,
-                    {0, 100},
-                    Need::never,
-                    "1",
-                    "Factor on the effect; 0: as if it were off."});
+    Range const range{0, effect.largest_strength};
+    rows.push_back(
+        {table, "strength", strength, D::none, range, Need::never, "1", "Factor on the effect; 0: as if off."});
   }
   return rows;
 }
