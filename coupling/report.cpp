@@ -54,9 +54,9 @@ std::string page(ReportInput const& input) {
     return section(contents, id, title, content);
   };
   double const plate_top = -input.checked.machine.layer_thickness * static_cast<double>(input.layer_count());
-  std::string body = add("layers", "Layer by layer", layer_table(input) + trends(input));
-  body += add("bed", "The bed", shown_note(input) + bed_pictures(input) + std::string(viewer_html));
-  body += add("powder", "The powder layer", surface_maps(input) + profiles(input) + size_distribution(input));
+  std::string body = add("bed", "The bed", shown_note(input) + bed_pictures(input) + std::string(viewer_html));
+  body += add("layers", "Layer by layer", layer_table(input) + trends(input));
+  body += add("powder", "The powder layer", surface_maps(input) + profiles_and_sizes(input));
   if (input.laser()) {
     body += add("light", "Where the light went", energy_maps(input));
     body += add("melt", "What melted", std::string(melt_key_html) + melt_section_figures(input));

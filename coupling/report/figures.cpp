@@ -16,15 +16,22 @@
 namespace layerloop::coupling {
 namespace {
 
-constexpr double page_width = 1140, third_width = 420;
+constexpr double page_width = 1140, half_width = 560, third_width = 420;
 
 std::string csv_name(std::string_view name, LayerRecord const& layer) {
   return fmt::format("{}_{:04}.csv", name, layer.layer);
 }
 
+/// Figures side by side, as many as the page has room for: small ones, or large ones in pairs.
 std::string grid(std::string const& figures) {
   return figures.empty() ? "" : "<div class=\"grid\">" + figures + "</div>\n";
 }
+std::string pairs(std::string const& figures) {
+  return figures.empty() ? "" : "<div class=\"pairs\">" + figures + "</div>\n";
+}
+
+/// Long maps take the whole width of the page, others stand in pairs.
+double map_width(Raster const& map) { return map.nx > 3.5 * map.ny ? page_width : half_width; }
 
 Raster raster_of(AreaMap const& map, double scale, double offset) {
   Raster raster{1e6 * map.x0, 1e6 * map.y0, 1e6 * map.spacing, map.nx, map.ny, map.values};
@@ -91,9 +98,56 @@ std::string section_figure(LayerRecord const& layer, MeltSection const& section,
       {[&](int j, int k) { return melted(j + j0, k + k0); }, "outline-melted"},
   };
   std::string const plot = map_plot(shown, scale, "y [\xc2\xb5m]", "z [\xc2\xb5m]", outlines, third_width);
-  return figure(plot,
-                fmt::format("<b>Layer {}</b>, cut at x = {} &micro;m.", layer.layer, significant(1e6 * section.x, 4)),
-                "sections.csv");
+  return figure(
+      plot,
+      fmt::format("<b>Layer {}</b>, cut at x = {} &micro;m.", layer.layer, chosen(std::round(1e7 * section.x) / 10)),
+      "sections.csv");
+}
+
+std::string profiles(ReportInput const& input) {
+  std::vector<Series> density, thickness, diameter;
+  for (LayerRecord const* layer : input.shown) {
+    Series const empty{.name = fmt::format("layer {}", layer->layer), .x = {}, .y = {}};
+    density.push_back(empty), thickness.push_back(empty), diameter.push_back(empty);
+    for (LayerBin const& bin : layer->metrics.bins) {
+      for (auto* plot : {&density, &thickness, &diameter}) plot->back().x.push_back(1e6 * bin.x);
+      density.back().y.push_back(bin.relative_density);
+      thickness.back().y.push_back(1e6 * bin.effective_thickness);
+      diameter.back().y.push_back(bin.grains > 0 ? 1e6 * bin.mean_diameter : std::nan(""));
+    }
+  }
+  std::string const x = "x [\xc2\xb5m]";
+  auto const plot = [&](std::string const& label, std::vector<Series> series, std::string_view caption) {
+    return figure(
+        line_plot({.x_label = x, .y_label = label, .series = std::move(series), .width = half_width, .height = 290}),
+        caption, "profiles.csv");
+  };
+  return plot("relative density", std::move(density), "How densely the layer lies along the way of the blade.") +
+         plot("effective thickness [\xc2\xb5m]", std::move(thickness), "Powder per area, as if it were solid.") +
+         plot("mean diameter [\xc2\xb5m]", std::move(diameter),
+              "A slope means that the blade sorts the grains by size.");
+}
+
+std::string size_distribution(ReportInput const& input) {
+  BarPlot plot{.x_label = "grain diameter [\xc2\xb5m]",
+               .y_label = "share by number",
+               .categories = {},
+               .series = {},
+               .width = half_width,
+               .height = 290};
+  plot.series = {{.name = "as fed", .x = {}, .y = {}},
+                 {.name = "whole bed at the end", .x = {}, .y = {}},
+                 {.name = "on the plate", .x = {}, .y = {}}};
+  for (SizeShares const& s : size_shares(input.checked, input.bed)) {
+    plot.categories.push_back(fmt::format("{:.4g}", 1e6 * s.diameter));
+    plot.series[0].y.push_back(s.fed);
+    plot.series[1].y.push_back(s.bed);
+    plot.series[2].y.push_back(s.plate);
+  }
+  return figure(
+      bar_plot(plot),
+      "Grain sizes: what the case asks for, all loose grains that are left, and those in the deposition zone.",
+      "size_distribution.csv");
 }
 
 /// One small plot of quantities over the layers.
@@ -151,54 +205,16 @@ std::string surface_maps(ReportInput const& input) {
     LayerRecord const& layer = *input.shown[k];
     double const plate = -1e6 * input.checked.machine.layer_thickness * layer.layer;
     figures += figure(
-        map_plot(maps[k], scale, "x along the recoating direction [\xc2\xb5m]", "y [\xc2\xb5m]", {}, page_width),
+        map_plot(maps[k], scale, "x along the recoating direction [\xc2\xb5m]", "y [\xc2\xb5m]", {},
+                 map_width(maps[k])),
         fmt::format("<b>Layer {}</b> after spreading; 0 is the level of the platforms, the plate lies at {} &micro;m.",
-                    layer.layer, significant(plate)),
+                    layer.layer, chosen(plate)),
         csv_name("surface", layer));
   }
-  return figures;
+  return pairs(figures);
 }
 
-std::string profiles(ReportInput const& input) {
-  std::vector<Series> density, thickness, diameter;
-  for (LayerRecord const* layer : input.shown) {
-    Series const empty{.name = fmt::format("layer {}", layer->layer), .x = {}, .y = {}};
-    density.push_back(empty), thickness.push_back(empty), diameter.push_back(empty);
-    for (LayerBin const& bin : layer->metrics.bins) {
-      for (auto* plot : {&density, &thickness, &diameter}) plot->back().x.push_back(1e6 * bin.x);
-      density.back().y.push_back(bin.relative_density);
-      thickness.back().y.push_back(1e6 * bin.effective_thickness);
-      diameter.back().y.push_back(bin.grains > 0 ? 1e6 * bin.mean_diameter : std::nan(""));
-    }
-  }
-  std::string const x = "x [\xc2\xb5m]";
-  auto const plot = [&](std::string const& label, std::vector<Series> series, std::string_view caption) {
-    return figure(
-        line_plot({.x_label = x, .y_label = label, .series = std::move(series), .width = third_width, .height = 280}),
-        caption, "profiles.csv");
-  };
-  return grid(
-      plot("relative density", std::move(density), "How densely the layer lies along the way of the blade.") +
-      plot("effective thickness [\xc2\xb5m]", std::move(thickness), "Powder per area, as if it were solid.") +
-      plot("mean diameter [\xc2\xb5m]", std::move(diameter), "A slope means that the blade sorts the grains by size."));
-}
-
-std::string size_distribution(ReportInput const& input) {
-  BarPlot plot{.x_label = "grain diameter [\xc2\xb5m]", .y_label = "share by number", .categories = {}, .series = {}};
-  plot.series = {{.name = "as fed", .x = {}, .y = {}},
-                 {.name = "whole bed at the end", .x = {}, .y = {}},
-                 {.name = "on the plate", .x = {}, .y = {}}};
-  for (SizeShares const& s : size_shares(input.checked, input.bed)) {
-    plot.categories.push_back(fmt::format("{:.4g}", 1e6 * s.diameter));
-    plot.series[0].y.push_back(s.fed);
-    plot.series[1].y.push_back(s.bed);
-    plot.series[2].y.push_back(s.plate);
-  }
-  return figure(
-      bar_plot(plot),
-      "Grain sizes: what the case asks for, all loose grains that are left, and those in the deposition zone.",
-      "size_distribution.csv");
-}
+std::string profiles_and_sizes(ReportInput const& input) { return pairs(profiles(input) + size_distribution(input)); }
 
 std::string energy_maps(ReportInput const& input) {
   std::vector<Raster> maps;
@@ -210,14 +226,14 @@ std::string energy_maps(ReportInput const& input) {
     if (maps[k].values.empty()) continue;
     LayerRecord const& layer = *input.shown[k];
     figures += figure(
-        map_plot(maps[k], scale, "x [\xc2\xb5m]", "y [\xc2\xb5m]", {}, page_width),
+        map_plot(maps[k], scale, "x [\xc2\xb5m]", "y [\xc2\xb5m]", {}, map_width(maps[k])),
         fmt::format(
             "<b>Layer {}</b>, whole exposure, seen from above: absorptivity {}, {} rays, {} hits on a surface per ray.",
-            layer.layer, with_uncertainty(layer.absorptivity, layer.absorptivity_standard_error),
-            significant(double(layer.rays), 3), significant(layer.mean_bounces)),
+            layer.layer, with_uncertainty(layer.absorptivity, layer.absorptivity_standard_error), count(layer.rays),
+            significant(layer.mean_bounces)),
         csv_name("absorbed_energy", layer));
   }
-  return figures;
+  return pairs(figures);
 }
 
 std::string melt_section_figures(ReportInput const& input) {
@@ -246,12 +262,12 @@ std::string part_surface_maps(ReportInput const& input) {
   for (std::size_t k = 0; k < maps.size(); ++k) {
     if (maps[k].values.empty()) continue;
     LayerRecord const& layer = *input.shown[k];
-    figures += figure(map_plot(maps[k], scale, "x [\xc2\xb5m]", "y [\xc2\xb5m]", {}, page_width),
+    figures += figure(map_plot(maps[k], scale, "x [\xc2\xb5m]", "y [\xc2\xb5m]", {}, map_width(maps[k])),
                       fmt::format("The solid after <b>layer {}</b>; nominal height {} &micro;m.", layer.layer,
-                                  significant(thickness * layer.layer)),
+                                  chosen(thickness * layer.layer)),
                       csv_name("part_surface", layer));
   }
-  return figures;
+  return pairs(figures);
 }
 
 std::string trends(ReportInput const& input) {

@@ -8,8 +8,7 @@ namespace layerloop::coupling {
 // Each returns figures as HTML; empty where the run has nothing to show.
 std::string bed_pictures(ReportInput const& input);
 std::string surface_maps(ReportInput const& input);
-std::string profiles(ReportInput const& input);
-std::string size_distribution(ReportInput const& input);
+std::string profiles_and_sizes(ReportInput const& input);
 std::string energy_maps(ReportInput const& input);
 std::string melt_section_figures(ReportInput const& input);
 std::string part_surface_maps(ReportInput const& input);

@@ -72,8 +72,18 @@ std::string significant(double value, int digits) {
   std::string const rounded = fmt::format("{:.{}e}", value, digits - 1);
   int const exponent = std::stoi(rounded.substr(rounded.find('e') + 1));
   if (exponent < -4 || exponent > 6)
-    return fmt::format("{}&nbsp;&times;&nbsp;10<sup>{}</sup>", rounded.substr(0, rounded.find('e')), exponent);
-  return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));
+    return fmt::format("<span class=\"power\">{} &times; 10<sup>{}</sup></span>", rounded.substr(0, rounded.find('e')),
+                       exponent);
+  return fmt::format("{}{:.{}f}", value < 0 ? "&minus;" : "", std::abs(value), std::max(0, digits - 1 - exponent));
+}
+
+std::string chosen(double value) { return fmt::format("{:.6g}", value); }
+
+std::string count(std::int64_t number) {
+  std::string digits = std::to_string(number);
+  for (int at = static_cast<int>(digits.size()) - 3; at > (number < 0 ? 1 : 0); at -= 3)
+    digits.insert(static_cast<std::size_t>(at), "&#8239;");
+  return digits;
 }
 
 std::string with_uncertainty(double value, double uncertainty) {

@@ -23,6 +23,12 @@ std::string fill_in(std::string_view text, std::map<std::string, std::string> co
 /// finite.
 std::string significant(double value, int digits = 3);
 
+/// A value that someone chose: as short as it can be, "60" or "0.8".
+std::string chosen(double value);
+
+/// "960 000"
+std::string count(std::int64_t number);
+
 /// "0.612 &plusmn; 0.004": as many digits as the uncertainty carries. Without one, three significant digits.
 std::string with_uncertainty(double value, double uncertainty);
 

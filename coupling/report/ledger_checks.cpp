@@ -32,7 +32,6 @@ LedgerTable mass_table(Ledger const& l) {
 LedgerTable particle_table(Ledger const& l) {
   std::int64_t const missing =
       l.particles_fed - l.particles_bed - l.particles_overflow - l.particles_melted - l.particles_lost;
-  auto const count = [](std::int64_t n) { return std::to_string(n); };
   return {"Grains",
           {{"fed", count(l.particles_fed), true},
            {"in the bed", count(l.particles_bed)},

@@ -38,7 +38,8 @@ std::string colour_bar(Raster const& raster, ColourScale const& scale, Frame con
     auto const rgb = colour(scale.map, i / 255.0);
     ramp.rgb.insert(ramp.rgb.end(), rgb.begin(), rgb.end());
   }
-  double const width = std::min(300.0, 0.55 * map.width), left = map.left + map.width - width, top = 20, height = 11;
+  double const width = std::min(280.0, 0.55 * map.width), left = map.left + map.width - width - 10, top = 20,
+               height = 11;
   Frame const bar{left, top, width, height, scale.low, scale.high, 0, 1};
   std::string drawn = fmt::format(
       "<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"label\">{}</text><image href=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" "
@@ -46,18 +47,20 @@ std::string colour_bar(Raster const& raster, ColourScale const& scale, Frame con
       "height=\"{:.1f}\" preserveAspectRatio=\"none\"/>",
       map.left, top + 10, escape(scale.label), embedded_png(ramp), left, top, width, height);
   Ticks const ticks = round_ticks(scale.low, scale.high, std::max(2, static_cast<int>(width / 62)));
-  auto const beyond = [&](auto test) { return std::any_of(raster.values.begin(), raster.values.end(), test); };
-  bool const below = beyond([&](double v) { return v < scale.low; }),
-             above = beyond([&](double v) { return v > scale.high; });
   for (double value : ticks.at) {
-    std::string const sign = below && value == ticks.at.front() && bar.x(value) < left + 6          ? "\xe2\x89\xa4"
-                             : above && value == ticks.at.back() && bar.x(value) > left + width - 6 ? "\xe2\x89\xa5"
-                                                                                                    : "";
     drawn += fmt::format(
         "<path d=\"M{0:.1f} {1:.1f}v4\" class=\"axis\"/><text x=\"{0:.1f}\" y=\"{2:.1f}\" "
-        "text-anchor=\"middle\">{3}{4}</text>",
-        bar.x(value), top + height, top + height + 16, sign, ticks.label(value));
+        "text-anchor=\"middle\">{3}</text>",
+        bar.x(value), top + height, top + height + 16, ticks.label(value));
   }
+  // A pointed end says that there are values beyond.
+  auto const beyond = [&](auto test) { return std::any_of(raster.values.begin(), raster.values.end(), test); };
+  auto const tip = [&](double x, double length, double t) {
+    drawn += fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}l{:.1f} {:.1f}z\" fill=\"{}\"/>", x, top, length,
+                         height / 2, -length, height / 2, hex_colour(colour(scale.map, t)));
+  };
+  if (beyond([&](double v) { return v < scale.low; })) tip(left, -9, 0);
+  if (beyond([&](double v) { return v > scale.high; })) tip(left + width, 9, 1);
   if (!scale.mark_label.empty() && scale.mark > scale.low && scale.mark < scale.high)
     drawn += fmt::format(
         "<path d=\"M{0:.1f} {1:.1f}v{2:.1f}\" class=\"mark\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\" "
@@ -104,13 +107,14 @@ Raster crop(Raster const& raster, int i0, int i1, int j0, int j1) {
 
 std::string map_plot(Raster const& raster, ColourScale const& scale, std::string const& x_label,
                      std::string const& y_label, std::vector<Outline> const& outlines, double width) {
-  double const left = 62, top = 52, right = 12, bottom = 48;
+  double const left = plot_left, top = 52, right = 12, bottom = 48;
   double const size_x = raster.cell * raster.nx, size_y = raster.cell * raster.ny;
   double map_width = width - left - right, map_height = map_width * size_y / size_x;
   double const stretch = std::max(1.0, size_x / size_y / longest_aspect);
   map_height *= stretch;
   if (map_height > tallest) {
     map_width *= tallest / map_height;
+    width = std::max(map_width, 260.0) + left + right;
     map_height = tallest;
   }
   Frame const map{left, top, map_width, map_height, raster.x0, raster.x0 + size_x, raster.y0, raster.y0 + size_y};

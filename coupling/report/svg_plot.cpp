@@ -19,11 +19,14 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  /// Room for the data: a share of the span on both sides; never empty.
+  /// With a share of the span as room on both sides; never empty.
   Range padded(double share) const {
     if (low > high) return {0, 1};
-    double const span = high > low ? high - low : std::max(std::abs(high) * 0.2, 1e-12);
-    return {low - share * span, high + share * span};
+    double const span = high - low;
+    // What varies by less than 4 % is drawn as nearly level, so that scatter does not look like a trend.
+    double const least = std::max({span, 0.04 * std::abs(high), 0.04 * std::abs(low), 1e-12});
+    double const room = 0.5 * (least - span) + share * least;
+    return {low - room, high + room};
   }
 };
 
@@ -113,7 +116,7 @@ std::string y_axis(Frame const& frame, std::string const& label, GridLines grid)
   drawn += line(frame.left, frame.top, frame.left, frame.top + frame.height, "axis");
   drawn += fmt::format(
       "<text transform=\"translate({:.1f} {:.1f}) rotate(-90)\" text-anchor=\"middle\" class=\"label\">{}</text>",
-      frame.left - 46, frame.top + frame.height / 2, escape(label));
+      frame.left - 54, frame.top + frame.height / 2, escape(label));
   return drawn;
 }
 
@@ -156,7 +159,7 @@ std::string line_plot(LinePlot const& plot) {
   y = y.padded(0.08);
   if (plot.from_zero) y.low = 0;
   double const top = plot.series.size() > 1 ? 28 : 12;
-  Frame const frame{62, top, plot.width - 62 - 12, plot.height - top - 48, x.low, x.high, y.low, y.high};
+  Frame const frame{plot_left, top, plot.width - plot_left - 12, plot.height - top - 48, x.low, x.high, y.low, y.high};
   std::string content = y_axis(frame, plot.y_label, GridLines::horizontal) +
                         x_axis(frame, plot.x_label, x_ticks(frame, plot.whole_x)) + legend(plot.series, frame);
   for (std::size_t k = 0; k < plot.series.size(); ++k)
@@ -170,7 +173,8 @@ std::string bar_plot(BarPlot const& plot) {
   for (Series const& series : plot.series)
     for (double value : series.y) y.add(value);
   auto const count = static_cast<double>(std::max<std::size_t>(1, plot.categories.size()));
-  Frame const frame{62, 28, plot.width - 62 - 12, plot.height - 28 - 48, -0.5, count - 0.5, 0, y.padded(0.08).high};
+  Frame const frame{plot_left,   28, plot.width - plot_left - 12, plot.height - 28 - 48, -0.5,
+                    count - 0.5, 0,  y.padded(0.08).high};
   std::vector<Tick> ticks;
   for (std::size_t c = 0; c < plot.categories.size(); ++c)
     ticks.push_back({static_cast<double>(c), escape(plot.categories[c])});

@@ -20,6 +20,8 @@ struct Frame {
   double y(double value) const { return top + height * (y_high - value) / (y_high - y_low); }
 };
 
+inline constexpr double plot_left = 70;  ///< room for numbers and label of the y axis [px]
+
 enum class GridLines { none, horizontal };
 struct Tick {
   double value;
@@ -62,6 +64,6 @@ struct Share {
   std::string name;
   double value;
 };
-std::string share_bar(std::vector<Share> const& shares, std::string const& unit, double width = 1060);
+std::string share_bar(std::vector<Share> const& shares, std::string const& unit, double width = 1150);
 
 }  // namespace layerloop::coupling

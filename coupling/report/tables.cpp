@@ -45,7 +45,7 @@ struct Row {
 
 std::vector<Row> powder_rows() {
   using L = LayerRecord const&;
-  return {{"grains in the layer", "", [](L l) { return std::to_string(l.grains_in_layer); }},
+  return {{"grains in the layer", "", [](L l) { return count(l.grains_in_layer); }},
           {"effective thickness", "&micro;m", [](L l) { return um(l.metrics.effective_thickness); }},
           {"real effective thickness", "&micro;m", [](L l) { return um(l.metrics.real_effective_thickness); }},
           {"void layer", "&micro;m", [](L l) { return um(l.metrics.void_layer); }},
@@ -70,33 +70,33 @@ std::vector<Row> laser_rows() {
 
 std::vector<Row> part_rows() {
   using L = LayerRecord const&;
-  return {
-      {"grains melted (of them trapped whole)", "",
-       [](L l) { return fmt::format("{} ({})", l.consolidation.grains_melted, l.consolidation.grains_trapped); }},
-      {"melted mass", "&micro;g", [](L l) { return significant(1e9 * l.consolidation.melted_mass, 4); }},
-      {"grains moved clear of the new surface", "", [](L l) { return std::to_string(l.consolidation.grains_moved); }},
-      {"triangles of plate and part", "", [](L l) { return std::to_string(l.consolidation.triangles); }},
-      {"relative density of the part", "%",
-       [](L l) { return significant(100 * l.consolidation.part_relative_density, 4); }}};
+  return {{"grains melted (of them trapped whole)", "",
+           [](L l) { return fmt::format("{} ({})", l.consolidation.grains_melted, l.consolidation.grains_trapped); }},
+          {"melted mass", "&micro;g", [](L l) { return significant(1e9 * l.consolidation.melted_mass, 4); }},
+          {"grains moved clear of the new surface", "", [](L l) { return count(l.consolidation.grains_moved); }},
+          {"triangles of plate and part", "", [](L l) { return count(l.consolidation.triangles); }},
+          {"relative density of the part", "%",
+           [](L l) { return significant(100 * l.consolidation.part_relative_density, 4); }}};
 }
 
 }  // namespace
 
 std::string headline(ReportInput const& input) {
   Case const& c = input.checked;
+  auto const um = [](double metres) { return chosen(1e6 * metres); };
   std::size_t const layers = input.layer_count();
   std::string text = fmt::format(
       "{} layer{} of {} powder, {} &micro;m each, spread by a blade at {} mm/s over {} &times; {} &micro;m. ", layers,
       layers == 1 ? "" : "s", escape(c.material.name), um(c.machine.layer_thickness),
-      significant(1e3 * c.machine.recoating_speed), um(c.machine.deposition_length, 4), um(c.machine.width, 4));
+      chosen(1e3 * c.machine.recoating_speed), um(c.machine.deposition_length), um(c.machine.width));
   if (!input.laser()) return text + "No laser: a zone of the bed was frozen and meshed.";
   std::string const tracks = c.scan.kind == ScanKind::hatch
                                  ? fmt::format("{} tracks of {} &micro;m a layer, {} &micro;m apart,", c.scan.tracks,
-                                               um(c.scan.track_length, 4), um(c.scan.hatch_spacing))
-                                 : fmt::format("One track of {} &micro;m a layer", um(c.scan.track_length, 4));
+                                               um(c.scan.track_length), um(c.scan.hatch_spacing))
+                                 : fmt::format("One track of {} &micro;m a layer", um(c.scan.track_length));
   static constexpr std::array definition{"1/e&sup2;", "D4&sigma;", "FWHM"};
-  return text + fmt::format("{} at {} m/s and {} W, spot {} &micro;m ({}).", tracks, significant(c.scan.scan_speed),
-                            significant(c.laser.power), um(c.laser.spot_diameter),
+  return text + fmt::format("{} at {} m/s and {} W, spot {} &micro;m ({}).", tracks, chosen(c.scan.scan_speed),
+                            chosen(c.laser.power), um(c.laser.spot_diameter),
                             definition[static_cast<std::size_t>(c.laser.spot_definition)]);
 }
 
@@ -104,12 +104,14 @@ std::string cards(ReportInput const& input) {
   LayerRecord const& last = input.last();
   LayerMetrics const& m = last.metrics;
   std::string all =
-      card(
-          "Layers", std::to_string(input.layer_count()), input.layer_count() == 1 ? "layer" : "layers",
-          fmt::format("{} grains fed, {} in the last layer", input.record.ledger.particles_fed, last.grains_in_layer)) +
+      card("Layers",
+           fmt::format("{} <span class=\"times\">&times;</span> {}", input.layer_count(),
+                       chosen(1e6 * input.checked.machine.layer_thickness)),
+           "&micro;m",
+           fmt::format("{} grains fed, {} in the last layer", count(input.record.ledger.particles_fed),
+                       count(last.grains_in_layer))) +
       card("Effective layer thickness", um(m.effective_thickness), "&micro;m",
-           fmt::format("real: {} &micro;m, nominal step {} &micro;m", um(m.real_effective_thickness),
-                       um(input.checked.machine.layer_thickness))) +
+           fmt::format("powder per area, as if it were solid; real: {} &micro;m", um(m.real_effective_thickness))) +
       card("Packing of the layer", significant(m.volume_fraction_real), "",
            fmt::format("volume fraction, real; {} % of the surface is covered", significant(100 * m.surface_coverage)));
   if (input.laser()) all += laser_cards(last);
@@ -162,7 +164,7 @@ std::string ledger_tables(ReportInput const& input) {
     tables +=
         fmt::format("<div class=\"ledger\"><h3>{}</h3><table><tbody>\n{}</tbody></table></div>\n", ledger.title, rows);
   }
-  return "<div class=\"grid\">" + tables + "</div>\n";
+  return "<div class=\"pairs\">" + tables + "</div>\n";
 }
 
 std::string definition_table(ReportInput const& input) {

@@ -159,7 +159,7 @@
   const middle = [0, 1].map((c) => .5 * (data.metal_low[c] + data.metal_high[c]));
   const extent = [0, 1].map((c) => data.metal_high[c] - data.metal_low[c]);
   const camera = {turn: -1.1, rise: .62, distance: 1, target: [0, 0, 0]};
-  const field = .6;  // vertical field of view [rad]
+  const field = .36;  // vertical field of view [rad]
   const look = (name) => {
     const turn = name === 'side' ? -Math.PI / 2 : name === 'top' ? -Math.PI / 2 : -1.15;
     const rise = name === 'side' ? .06 : name === 'top' ? Math.PI / 2 : .62;
