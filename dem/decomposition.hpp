@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/communicator.hpp"
+#include "dem/grains.hpp"
+
+namespace layerloop::dem {
+
+/// Grains shared out over the ranks in slices along x with equal numbers of grains, cut anew at every rebuild.
+class Decomposition {
+ public:
+  explicit Decomposition(Communicator const& communicator) : communicator_(communicator) {}
+
+  /// Sends every grain, and the springs of its contacts, to the rank whose slice holds it. Collective.
+  /// \param springs  in: those of this rank's grains; out: those of its new grains, sorted
+  void redistribute(std::vector<GrainRecord>& grains, std::vector<LocalSpring> const& old_springs,
+                    std::vector<ContactSpring>& springs);
+
+  /// Appends copies of other ranks' grains that lie within `reach` of this rank's slice. Collective.
+  void add_ghosts(Grains& grains, double reach, double density);
+
+  /// Brings position, velocity and spin of the ghosts up to date. Collective; allocates nothing.
+  void update_ghosts(Grains& grains);
+
+  int size() const { return communicator_.size(); }
+
+ private:
+  Communicator communicator_;
+  std::vector<double> cuts_;                          ///< slice r is [cuts_[r], cuts_[r + 1])
+  std::vector<std::vector<std::int32_t>> sent_rows_;  ///< by rank
+  std::vector<std::size_t> received_;                 ///< ghosts by rank
+  std::vector<double> send_buffer_, receive_buffer_;
+  std::vector<MPI_Request> requests_;
+};
+
+}  // namespace layerloop::dem

@@ -1,0 +1,204 @@
+// What a simulation looks at every few steps: is everything still physical, must the neighbours be listed anew?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "dem/simulation.hpp"
+
+namespace layerloop::dem {
+namespace {
+constexpr double overlap_limit = 0.05;  // of the smaller diameter
+constexpr double nip_limit = 0.02;      // of the smaller diameter, while a wall moves
+constexpr double step_limit = 0.1;      // of the smallest radius
+constexpr double least_steps_a_contact = 8;
+constexpr std::int64_t steps_between_looks = 10;
+constexpr std::int64_t steps_between_sink_checks = 500;
+
+std::string place(Grains const& g, std::size_t i) {
+  return fmt::format("x = {:.1f}, y = {:.1f}, z = {:.1f} um", g.x[i] * 1e6, g.y[i] * 1e6, g.z[i] * 1e6);
+}
+}  // namespace
+
+bool Simulation::is_inside(std::size_t i) const {
+  return grains_.x[i] > rig_.x_range[0] && grains_.x[i] < rig_.x_range[1] && grains_.z[i] > rig_.z_range[0] &&
+         grains_.z[i] < rig_.z_range[1];
+}
+
+Simulation::Watch Simulation::shared_watch() {
+  for (std::size_t i = 0; i < grains_.owned; ++i) {
+    double const dx = grains_.x[i] - x_built_[i], dz = grains_.z[i] - z_built_[i];
+    double dy = std::abs(grains_.y[i] - y_built_[i]);
+    dy = std::min(dy, rig_.width - dy);
+    watch_.displacement_squared = std::max(watch_.displacement_squared, dx * dx + dy * dy + dz * dz);
+    if (!is_inside(i)) watch_.broken = 1;
+  }
+  std::array<double, 5> values{watch_.step_squared, watch_.displacement_squared, watch_.overlap, watch_.broken,
+                               stop_requested() ? 1.0 : 0.0};
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), 5, MPI_DOUBLE, MPI_MAX, communicator_.handle());
+  if (values[4] > 0) throw StoppedBySignal("stopped by a signal while grains were moving; this layer starts again on resume");
+  watch_ = {};
+  return {values[0], values[1], values[2], values[3]};
+}
+
+/// \return number of steps that may be made before the next look
+std::int64_t Simulation::look() {
+  bool const sink_is_due = steps_ >= next_sink_check_;
+  if (sink_is_due) {
+    next_sink_check_ = steps_ + steps_between_sink_checks;
+    std::vector<char> beyond(grains_.owned);
+    for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] = grains_.x[i] > rig_.sink_x || grains_.z[i] > rig_.sink_z;
+    take_out(beyond);
+  }
+  Watch const seen = shared_watch();
+  if (seen.broken > 0) fail(find_lost_grain());
+  largest_overlap_ = std::max(largest_overlap_, seen.overlap);
+  if (seen.overlap > overlap_limit) fail(find_overlap());
+  if (seen.overlap > nip_limit && fastest_wall_ > 0) take_out_nipped();
+
+  double const dt = motion_.time_step, step = std::sqrt(seen.step_squared), speed = std::max(step / dt, fastest_wall_);
+  double const walls_moved = fastest_wall_ * (time() - time_built_);
+  double const moved = std::max(std::sqrt(seen.displacement_squared), walls_moved);
+  bool const contact_too_short =
+      speed > 0 && hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) < least_steps_a_contact * dt;
+  if (step > step_limit * smallest_radius_ || contact_too_short || moved > 0.5 * skin_) fail(find_fastest());
+
+  std::int64_t const force = communicator_.sum(pushed_back_);
+  blade_force_ = std::max(blade_force_, static_cast<double>(force) * 1e-18);
+
+  double const expected = 1.5 * speed * dt + 1e-30;  // speeds may grow until the next look
+  auto const steps_left = [&](double way) {
+    return static_cast<std::int64_t>(std::min(way / expected, static_cast<double>(steps_between_looks)));
+  };
+  std::int64_t steps = steps_left(0.5 * skin_ - moved);
+  if (steps < steps_between_looks) {
+    rebuild();
+    steps = std::max<std::int64_t>(1, steps_left(0.5 * skin_));
+  }
+  return steps;
+}
+
+std::int64_t Simulation::take_out(std::vector<char> const& leaves) {
+  std::int64_t gone = 0;
+  for (std::size_t i = 0; i < grains_.owned; ++i) {
+    grains_.leaves[i] = leaves[i];
+    gone += leaves[i];
+  }
+  gone = communicator_.sum(gone);
+  if (gone == 0) return 0;
+  grain_count_ -= gone;
+  if (grain_count_ == 0) throw PhysicsError("every grain left over the sink (nothing is left to spread) check machine and powder");
+  rebuild();
+  return gone;
+}
+
+template <class Visit>
+void Simulation::for_each_overlap(Visit const& visit) const {
+  static std::string const substrate = "the substrate";
+  Grains const& g = grains_;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    auto const i = static_cast<std::size_t>(pairs_.first[k]), j = static_cast<std::size_t>(pairs_.second[k]);
+    double const dx = g.x[i] - g.x[j], dz = g.z[i] - g.z[j], dy = std::remainder(g.y[i] - g.y[j], rig_.width);
+    double const overlap = pairs_.radius_sum[k] - std::sqrt(dx * dx + dy * dy + dz * dz);
+    visit(i, j, overlap * pairs_.inverse_diameter[k], nullptr);
+  }
+  for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w) {
+    auto const i = static_cast<std::size_t>(wall_contacts_.grain[w]);
+    auto const relative = [&](double distance) { return (g.radius[i] - distance) / (2 * g.radius[i]); };
+    for (std::int32_t b = wall_contacts_.block_begin[w]; b < wall_contacts_.block_begin[w + 1]; ++b) {
+      RoundedBlock const& block = rig_.walls.blocks[static_cast<std::size_t>(wall_contacts_.blocks[static_cast<std::size_t>(b)])];
+      visit(i, i, relative(nearest(block, block.velocity * time(), g.x[i], g.z[i]).distance), &block.name);
+    }
+    for (std::int32_t t = wall_contacts_.triangle_begin[w]; t < wall_contacts_.triangle_begin[w + 1]; ++t) {
+      std::int32_t const triangle = wall_contacts_.triangles[static_cast<std::size_t>(t)].triangle;
+      visit(i, i, relative(std::abs(contact_with(rig_.walls.substrate, triangle, {g.x[i], g.y[i], g.z[i]}).distance)), &substrate);
+    }
+  }
+}
+
+void Simulation::take_out_nipped() {
+  std::vector<char> nipped(grains_.size(), 0);
+  for_each_overlap([&](std::size_t i, std::size_t j, double overlap, std::string const*) {
+    if (overlap <= nip_limit) return;
+    bool const first_is_smaller = grains_.radius[i] < grains_.radius[j] || (grains_.radius[i] == grains_.radius[j] && i <= j);
+    nipped[first_is_smaller ? i : j] = 1;
+  });
+  nipped_ += take_out(nipped);
+}
+
+void Simulation::fail(Fault const& own) {
+  double const worst = communicator_.max(own.severity);
+  bool const is_mine = own.severity == worst && !own.text.empty();
+  std::string const line = is_mine ? own.text + '\n' : std::string();
+  std::vector<char> const all = communicator_.all_gather(std::vector<char>(line.begin(), line.end()));
+  std::string const text(all.begin(), all.end());
+  throw PhysicsError(text.substr(0, text.find('\n')));
+}
+
+Simulation::Fault Simulation::find_lost_grain() const {
+  Grains const& g = grains_;
+  for (std::size_t i = 0; i < g.owned; ++i) {
+    double const sum = g.x[i] + g.y[i] + g.z[i] + g.vx[i] + g.vy[i] + g.vz[i] + g.wx[i] + g.wy[i] + g.wz[i];
+    if (!std::isfinite(sum)) {
+      return {3, fmt::format("grain {} has a value that is not finite at t = {:.4g} ms (the motion is unstable) use a smaller "
+                             "contact.time_step_fraction",
+                             g.id[i], time() * 1e3)};
+    }
+    if (!is_inside(i)) {
+      return {2, fmt::format("grain {} left the machine at {} (no wall and no sink there) use a smaller contact.time_step_fraction, "
+                             "or a lower machine.recoating_speed if it was thrown out by the blade",
+                             g.id[i], place(g, i))};
+    }
+    if (!(g.vx[i] * g.vx[i] + g.vy[i] * g.vy[i] + g.vz[i] * g.vz[i] < fastest_grain * fastest_grain)) {
+      return {1, fmt::format("grain {} flies faster than 1 km/s at {} (the motion is unstable) use a smaller "
+                             "contact.time_step_fraction",
+                             g.id[i], place(g, i))};
+    }
+  }
+  return {};
+}
+
+Simulation::Fault Simulation::find_overlap() const {
+  Grains const& g = grains_;
+  double worst = 0;
+  std::size_t grain = 0;
+  std::string other;
+  for_each_overlap([&](std::size_t i, std::size_t j, double overlap, std::string const* wall) {
+    if (overlap <= worst) return;
+    worst = overlap;
+    grain = i;
+    other = wall ? *wall : fmt::format("grain {}", g.id[j]);
+  });
+  if (other.empty()) return {};
+  return {worst, fmt::format("grain {} overlaps {} by {:.1f} % of its diameter at {} ({:.0f} % is the limit: contacts are too soft, or "
+                             "the step is too long) use a stiffer contact.youngs_modulus, a smaller contact.time_step_fraction or a "
+                             "lower machine.recoating_speed",
+                             g.id[grain], other, 100 * worst, place(g, grain), 100 * overlap_limit)};
+}
+
+Simulation::Fault Simulation::find_fastest() const {
+  Grains const& g = grains_;
+  double fastest = -1;
+  std::size_t grain = 0;
+  for (std::size_t i = 0; i < g.owned; ++i) {
+    double const squared = g.vx[i] * g.vx[i] + g.vy[i] * g.vy[i] + g.vz[i] * g.vz[i];
+    if (squared > fastest) {
+      fastest = squared;
+      grain = i;
+    }
+  }
+  if (fastest < 0) return {};
+  double const speed = std::max(std::sqrt(fastest), fastest_wall_);
+  double const contact_steps =
+      hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) / motion_.time_step;
+  return {fastest, fmt::format("grain {} moves at {:.3g} m/s at {}: {:.3g} um a step, {:.1f} steps a contact (at most a tenth of the "
+                               "smallest radius, at least {:.0f} steps; the motion is unstable or not resolved) use a smaller "
+                               "contact.time_step_fraction or a stiffer contact.youngs_modulus",
+                               g.id[grain], std::sqrt(fastest), place(g, grain), std::sqrt(fastest) * motion_.time_step * 1e6,
+                               contact_steps, least_steps_a_contact)};
+}
+
+}  // namespace layerloop::dem

@@ -1,0 +1,102 @@
+#include "dem/recoater.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/compensated_sum.hpp"
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "dem/dosing.hpp"
+#include "dem/machine_rig.hpp"
+#include "dem/simulation.hpp"
+
+namespace layerloop::dem {
+namespace {
+constexpr double longest_settling = 1.5e-3;  // after the stroke [s]
+constexpr std::int64_t steps_between_progress = 1000;
+
+/// Raised solid in the blade's way, in words; empty when there is none.
+std::string raised_solid(MachineSettings const& machine, TriangleSurface const& substrate) {
+  Vec3 highest(0, 0, machine.blade_clearance);
+  std::int64_t count = 0;
+  for (Vec3 const& v : substrate.vertices) {
+    if (v.z() <= machine.blade_clearance) continue;
+    ++count;
+    if (v.z() > highest.z()) highest = v;
+  }
+  if (count == 0) return {};
+  return fmt::format("solid stands {:.2f} um above the blade's lower edge at x = {:.1f}, y = {:.1f} um ({} mesh points are above it)",
+                     (highest.z() - machine.blade_clearance) * 1e6, highest.x() * 1e6, highest.y() * 1e6, count);
+}
+
+double median_radius(PowderBed const& bed) {
+  std::vector<double> radius = bed.radius;
+  auto const middle = radius.begin() + static_cast<std::ptrdiff_t>(radius.size() / 2);
+  std::nth_element(radius.begin(), middle, radius.end());
+  return *middle;
+}
+
+/// Grains of `before` that `after` does not hold.
+void count_overflow(PowderBed const& before, PowderBed const& after, SpreadOutcome& outcome) {
+  CompensatedSum volume;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (std::ranges::binary_search(after.id, before.id[i])) continue;
+    ++outcome.overflow_grains;
+    volume.add(before.volume(i));
+  }
+  outcome.overflow_volume = volume.value();
+}
+
+void note(SpreadOutcome& outcome, Simulation const& simulation) {
+  outcome.steps += simulation.steps();
+  outcome.nipped_grains += simulation.nipped();
+  outcome.largest_overlap = std::max(outcome.largest_overlap, simulation.largest_overlap());
+  outcome.blade_force = std::max(outcome.blade_force, simulation.blade_force());
+}
+}  // namespace
+
+SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, Communicator const& communicator,
+                     bool show_progress) {
+  MachineSettings const& machine = checked.machine;
+  Motion const motion = motion_of(checked);
+  SpreadOutcome outcome;
+  outcome.blade_note = raised_solid(machine, substrate);
+  if (!outcome.blade_note.empty() && machine.blade_collision == BladeCollision::stop) {
+    throw PhysicsError(outcome.blade_note +
+                       " (a rigid blade would hit it) use a larger machine.layer_thickness or machine.blade_clearance, less laser "
+                       "power, or machine.blade_collision = \"report\" to go on");
+  }
+  PowderBed const before = bed;
+  double const smallest = *std::ranges::min_element(bed.radius);
+  outcome.time_step = motion.time_step;
+  outcome.bond_number = bond_number(median_radius(bed), motion.density, checked.contact);
+  outcome.steps_per_contact =
+      hertz_contact_time(smallest, motion.density, machine.recoating_speed, checked.contact) / motion.time_step;
+
+  Simulation stroke(motion, machine_rig(checked, substrate, bed, Tools::moving_blade), communicator);
+  stroke.scatter(bed);
+  double const duration = blade_stroke(machine) / machine.recoating_speed;
+  Progress progress("spread", duration, show_progress && communicator.is_root());
+  for (auto left = static_cast<std::int64_t>(std::ceil(duration / motion.time_step)); left > 0; left -= steps_between_progress) {
+    stroke.advance(std::min(left, steps_between_progress));
+    progress.update(stroke.time());
+  }
+  bed = stroke.gather();
+  note(outcome, stroke);
+
+  std::vector<char> keep(bed.size());
+  for (std::size_t i = 0; i < bed.size(); ++i) keep[i] = bed.x[i] >= 0 && bed.x[i] <= machine.deposition_end();
+  bed.retain(keep);
+  if (bed.size() == 0) throw PhysicsError("the blade swept every grain away (no layer is left) raise powder.particles or layer_thickness");
+  Simulation rest(motion, machine_rig(checked, substrate, bed, Tools::none), communicator);
+  rest.scatter(bed);
+  settle(rest, longest_settling, "settle", show_progress && communicator.is_root());
+  bed = rest.gather();
+  note(outcome, rest);
+  count_overflow(before, bed, outcome);
+  return outcome;
+}
+
+}  // namespace layerloop::dem
