@@ -5,17 +5,19 @@
 
 namespace layerloop::dem {
 
-/// Hertz-Mindlin contact with history, restitution-exact damping, SJKR2 cohesion and CDT rolling friction, as prefactors.
+/// Hertz-Mindlin contact with history, restitution-exact damping, SJKR2 cohesion and CDT rolling friction, as
+/// prefactors.
 ///
 /// With the overlap d, the reduced radius R and mass m, and root = sqrt(R d):
-///   normal      4/3 E root d - g_n v_n - k A,       1/E = sum (1 - nu^2)/E_i      (k: cohesion energy density, A: contact area)
-///   tangential  -(8 G root s + g_t v_t), cut at the Coulomb bound; 1/G = sum 2 (2 - nu)(1 + nu)/E_i
+///   normal      4/3 E root d - g_n v_n - k A,       1/E = sum (1 - nu^2)/E_i      (k: cohesion energy density, A:
+///   contact area) tangential  -(8 G root s + g_t v_t), cut at the Coulomb bound; 1/G = sum 2 (2 - nu)(1 + nu)/E_i
 ///   damping     g_n = -2 sqrt(5/6) b sqrt(2 E root m), g_t with 8 G in place of 2 E, b = ln e / sqrt(ln^2 e + pi^2)
 ///   rolling     torque mu_r R (4/3 E root d) against the relative rotation, its torsional part left out
-/// The normal force is not cut at zero before separation: then the restitution is e exactly at any speed (Antypov & Elliott,
-/// EPL 94 (2011) 50004). A sliding contact rescales its spring to the bound and drops tangential damping. Forms as in LIGGGHTS
-/// (`hertz tangential history rolling_friction cdt cohesion sjkr2`); cdt is model A of Ai et al., Powder Technol. 206 (2011) 269.
-/// Walls are of the grains' material: both bodies deform, R is the radius and m the mass of the grain.
+/// The normal force is not cut at zero before separation: then the restitution is e exactly at any speed (Antypov &
+/// Elliott, EPL 94 (2011) 50004). A sliding contact rescales its spring to the bound and drops tangential damping.
+/// Forms as in LIGGGHTS
+/// (`hertz tangential history rolling_friction cdt cohesion sjkr2`); cdt is model A of Ai et al., Powder Technol. 206
+/// (2011) 269. Walls are of the grains' material: both bodies deform, R is the radius and m the mass of the grain.
 struct ContactLaw {
   double normal_stiffness = 0;      ///< 4/3 E [Pa]
   double tangential_stiffness = 0;  ///< 8 G [Pa]
@@ -23,8 +25,8 @@ struct ContactLaw {
   double tangential_damping = 0;    ///< g_t / sqrt(m root) [sqrt(Pa)]
   double sliding_friction = 0;
   double rolling_friction = 0;
-  double cohesion = 0;              ///< attraction / (R d) [Pa]
-  double cohesion_in_coulomb = 0;   ///< the same where the Coulomb bound takes the total normal force, else 0
+  double cohesion = 0;             ///< attraction / (R d) [Pa]
+  double cohesion_in_coulomb = 0;  ///< the same where the Coulomb bound takes the total normal force, else 0
 };
 
 /// Two grains: A = 2 pi d (2 R), thesis eq. 6.
@@ -41,19 +43,19 @@ double bond_number(double radius, double density, ContactSettings const& contact
 
 /// Geometry and motion of one touching pair. The normal points from the second body to the first.
 struct ContactState {
-  double overlap, radius, mass;      ///< d, R, m
+  double overlap, radius, mass;  ///< d, R, m
   double nx, ny, nz;
-  double vx, vy, vz;                 ///< velocity of the first centre relative to the second [m/s]
-  double sx, sy, sz;                 ///< surface rotation: arm_1 w_1 + arm_2 w_2 [m/s], arm = radius - d/2
-  double wx, wy, wz;                 ///< spin of the first relative to the second [rad/s]
+  double vx, vy, vz;  ///< velocity of the first centre relative to the second [m/s]
+  double sx, sy, sz;  ///< surface rotation: arm_1 w_1 + arm_2 w_2 [m/s], arm = radius - d/2
+  double wx, wy, wz;  ///< spin of the first relative to the second [rad/s]
   double spring_x, spring_y, spring_z;
 };
 
 /// What a contact does to the first body; the second gets -force, and the torque with its own arm and +rolling.
 struct ContactAction {
-  double fx, fy, fz;                 ///< force on the first body [N]
-  double qx, qy, qz;                 ///< normal x tangential force; torque is -arm q on either body [N]
-  double rx, ry, rz;                 ///< rolling torque, taken from the first body [N m]
+  double fx, fy, fz;  ///< force on the first body [N]
+  double qx, qy, qz;  ///< normal x tangential force; torque is -arm q on either body [N]
+  double rx, ry, rz;  ///< rolling torque, taken from the first body [N m]
   double spring_x, spring_y, spring_z;
 };
 

@@ -29,12 +29,13 @@ std::vector<std::vector<T>> exchange(Communicator const& communicator, std::vect
   for (std::size_t r = 0; r < ranks; ++r) {
     if (sent[r] > 0) std::memcpy(out.data() + sent_at[r], to_rank[r].data(), static_cast<std::size_t>(sent[r]));
   }
-  MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_BYTE, in.data(), received.data(), received_at.data(), MPI_BYTE,
-                communicator.handle());
+  MPI_Alltoallv(out.data(), sent.data(), sent_at.data(), MPI_BYTE, in.data(), received.data(), received_at.data(),
+                MPI_BYTE, communicator.handle());
   std::vector<std::vector<T>> from_rank(ranks);
   for (std::size_t r = 0; r < ranks; ++r) {
     from_rank[r].resize(static_cast<std::size_t>(received[r]) / sizeof(T));
-    if (received[r] > 0) std::memcpy(from_rank[r].data(), in.data() + received_at[r], static_cast<std::size_t>(received[r]));
+    if (received[r] > 0)
+      std::memcpy(from_rank[r].data(), in.data() + received_at[r], static_cast<std::size_t>(received[r]));
   }
   return from_rank;
 }

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -16,10 +14,10 @@
 
 namespace layerloop::dem {
 namespace {
-constexpr double cloud_fraction = 0.32;      // solid fraction aimed at; random sequential addition jams at about 0.38
-constexpr double fall_speed = 0.15;          // [m/s] downwards at the start: shortens the free fall
+constexpr double cloud_fraction = 0.32;  // solid fraction aimed at; random sequential addition jams at about 0.38
+constexpr double fall_speed = 0.15;      // [m/s] downwards at the start: shortens the free fall
 constexpr std::uint32_t draws_a_height = 200;
-constexpr double longest_settling = 10e-3;   // [s]
+constexpr double longest_settling = 10e-3;  // [s]
 
 double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
 
@@ -27,7 +25,9 @@ double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radi
 class FreeSpace {
  public:
   FreeSpace(MachineSettings const& machine, double largest_radius)
-      : period_(machine.width), cell_(2 * largest_radius), nx_(static_cast<std::size_t>(machine.accumulation_length / cell_) + 1) {}
+      : period_(machine.width),
+        cell_(2 * largest_radius),
+        nx_(static_cast<std::size_t>(machine.accumulation_length / cell_) + 1) {}
 
   void add(Vec3 const& centre, double radius) {
     std::size_t const layer = row(centre.z());
@@ -123,13 +123,12 @@ void settle(Simulation& simulation, double longest, char const* stage, bool show
   while (simulation.time() - begin < longest) {
     simulation.advance(steps_between_checks);
     progress.update(simulation.time() - begin);
-    if(getenv("DBG")) fprintf(stderr,"%g %ld\n",simulation.time(),simulation.count_faster_than(rest_speed));
     if (20 * simulation.count_faster_than(rest_speed) <= simulation.grains()) return;
   }
 }
 
-std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count, std::int64_t next_id,
-                  Communicator const& communicator, bool show_progress) {
+std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count,
+                  std::int64_t next_id, Communicator const& communicator, bool show_progress) {
   Rig const rig = machine_rig(checked, substrate, bed, Tools::blade_and_gate);
   add_cloud(bed, checked, count, next_id);
   Simulation simulation(motion_of(checked), rig, communicator);

@@ -9,27 +9,25 @@
 
 namespace layerloop::dem {
 
-/// Radius of the grain with this id [m]: a pure function of seed and id, distributed as powder.diameters and fractions say.
-/// Fractions by volume are turned into fractions by number first.
+/// Radius of the grain with this id [m]: a pure function of seed and id, distributed as powder.diameters and fractions
+/// say. Fractions by volume are turned into fractions by number first.
 double draw_radius(Case const& checked, std::int64_t id);
 
-/// Adds grains with ids next_id ... next_id + count - 1 as a loose cloud in the accumulation zone, between the bed that is there
-/// and as high as it takes, falling slowly. Random sequential addition: no two grains overlap, and the result depends on
-/// seed, ids and bed only.
+/// Adds grains with ids next_id ... next_id + count - 1 as a loose cloud in the accumulation zone, between the bed that
+/// is there and as high as it takes, falling slowly. Random sequential addition: no two grains overlap, and the result
+/// depends on seed, ids and bed only.
 void add_cloud(PowderBed& bed, Case const& checked, std::int64_t count, std::int64_t next_id);
 
-/// Feeds `count` grains into the accumulation zone, between the parked blade and a gate, and lets everything come to rest.
-/// Collective; every rank gets the same bed.
-/// \param count  0: the bed only settles
-/// \return the next free id
+/// Feeds `count` grains into the accumulation zone, between the parked blade and a gate, and lets everything come to
+/// rest. Collective; every rank gets the same bed. \param count  0: the bed only settles \return the next free id
 /// \throws PhysicsError a guard of Simulation; StoppedBySignal
-std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count, std::int64_t next_id,
-                  Communicator const& communicator, bool show_progress);
+std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count,
+                  std::int64_t next_id, Communicator const& communicator, bool show_progress);
 
 class Simulation;
 
-/// At rest: at most one grain in twenty is faster than this [m/s] (those roll on slowly for milliseconds: CDT stops a rolling
-/// grain after some 15 radii).
+/// At rest: at most one grain in twenty is faster than this [m/s] (those roll on slowly for milliseconds: CDT stops a
+/// rolling grain after some 15 radii).
 inline constexpr double rest_speed = 1e-3;
 
 /// Advances until the grains are at rest or `longest` [s] have passed.

@@ -39,7 +39,8 @@ Simulation::Watch Simulation::shared_watch() {
   std::array<double, 5> values{watch_.step_squared, watch_.displacement_squared, watch_.overlap, watch_.broken,
                                stop_requested() ? 1.0 : 0.0};
   MPI_Allreduce(MPI_IN_PLACE, values.data(), 5, MPI_DOUBLE, MPI_MAX, communicator_.handle());
-  if (values[4] > 0) throw StoppedBySignal("stopped by a signal while grains were moving; this layer starts again on resume");
+  if (values[4] > 0)
+    throw StoppedBySignal("stopped by a signal while grains were moving; this layer starts again on resume");
   watch_ = {};
   return {values[0], values[1], values[2], values[3]};
 }
@@ -50,7 +51,8 @@ std::int64_t Simulation::look() {
   if (sink_is_due) {
     next_sink_check_ = steps_ + steps_between_sink_checks;
     std::vector<char> beyond(grains_.owned);
-    for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] = grains_.x[i] > rig_.sink_x || grains_.z[i] > rig_.sink_z;
+    for (std::size_t i = 0; i < beyond.size(); ++i)
+      beyond[i] = grains_.x[i] > rig_.sink_x || grains_.z[i] > rig_.sink_z;
     take_out(beyond);
   }
   Watch const seen = shared_watch();
@@ -62,8 +64,8 @@ std::int64_t Simulation::look() {
   double const dt = motion_.time_step, step = std::sqrt(seen.step_squared), speed = std::max(step / dt, fastest_wall_);
   double const walls_moved = fastest_wall_ * (time() - time_built_);
   double const moved = std::max(std::sqrt(seen.displacement_squared), walls_moved);
-  bool const contact_too_short =
-      speed > 0 && hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) < least_steps_a_contact * dt;
+  bool const contact_too_short = speed > 0 && hertz_contact_time(smallest_radius_, motion_.density, speed,
+                                                                 motion_.contact) < least_steps_a_contact * dt;
   if (step > step_limit * smallest_radius_ || contact_too_short || moved > 0.5 * skin_) fail(find_fastest());
 
   std::int64_t const force = communicator_.sum(pushed_back_);
@@ -90,7 +92,8 @@ std::int64_t Simulation::take_out(std::vector<char> const& leaves) {
   gone = communicator_.sum(gone);
   if (gone == 0) return 0;
   grain_count_ -= gone;
-  if (grain_count_ == 0) throw PhysicsError("every grain left over the sink (nothing is left to spread) check machine and powder");
+  if (grain_count_ == 0)
+    throw PhysicsError("every grain left over the sink (nothing is left to spread) check machine and powder");
   rebuild();
   return gone;
 }
@@ -109,12 +112,14 @@ void Simulation::for_each_overlap(Visit const& visit) const {
     auto const i = static_cast<std::size_t>(wall_contacts_.grain[w]);
     auto const relative = [&](double distance) { return (g.radius[i] - distance) / (2 * g.radius[i]); };
     for (std::int32_t b = wall_contacts_.block_begin[w]; b < wall_contacts_.block_begin[w + 1]; ++b) {
-      RoundedBlock const& block = rig_.walls.blocks[static_cast<std::size_t>(wall_contacts_.blocks[static_cast<std::size_t>(b)])];
+      RoundedBlock const& block =
+          rig_.walls.blocks[static_cast<std::size_t>(wall_contacts_.blocks[static_cast<std::size_t>(b)])];
       visit(i, i, relative(nearest(block, block.velocity * time(), g.x[i], g.z[i]).distance), &block.name);
     }
     for (std::int32_t t = wall_contacts_.triangle_begin[w]; t < wall_contacts_.triangle_begin[w + 1]; ++t) {
       std::int32_t const triangle = wall_contacts_.triangles[static_cast<std::size_t>(t)].triangle;
-      visit(i, i, relative(std::abs(contact_with(rig_.walls.substrate, triangle, {g.x[i], g.y[i], g.z[i]}).distance)), &substrate);
+      visit(i, i, relative(std::abs(contact_with(rig_.walls.substrate, triangle, {g.x[i], g.y[i], g.z[i]}).distance)),
+            &substrate);
     }
   }
 }
@@ -123,7 +128,8 @@ void Simulation::take_out_nipped() {
   std::vector<char> nipped(grains_.size(), 0);
   for_each_overlap([&](std::size_t i, std::size_t j, double overlap, std::string const*) {
     if (overlap <= nip_limit) return;
-    bool const first_is_smaller = grains_.radius[i] < grains_.radius[j] || (grains_.radius[i] == grains_.radius[j] && i <= j);
+    bool const first_is_smaller =
+        grains_.radius[i] < grains_.radius[j] || (grains_.radius[i] == grains_.radius[j] && i <= j);
     nipped[first_is_smaller ? i : j] = 1;
   });
   nipped_ += take_out(nipped);
@@ -143,14 +149,18 @@ Simulation::Fault Simulation::find_lost_grain() const {
   for (std::size_t i = 0; i < g.owned; ++i) {
     double const sum = g.x[i] + g.y[i] + g.z[i] + g.vx[i] + g.vy[i] + g.vz[i] + g.wx[i] + g.wy[i] + g.wz[i];
     if (!std::isfinite(sum)) {
-      return {3, fmt::format("grain {} has a value that is not finite at t = {:.4g} ms (the motion is unstable) use a smaller "
-                             "contact.time_step_fraction",
-                             g.id[i], time() * 1e3)};
+      return {3, fmt::format(
+                     "grain {} has a value that is not finite at t = {:.4g} ms (the motion is unstable) use a smaller "
+                     "contact.time_step_fraction",
+                     g.id[i], time() * 1e3)};
     }
     if (!is_inside(i)) {
-      return {2, fmt::format("grain {} left the machine at {} (no wall and no sink there) use a smaller contact.time_step_fraction, "
-                             "or a lower machine.recoating_speed if it was thrown out by the blade",
-                             g.id[i], place(g, i))};
+      return {
+          2,
+          fmt::format(
+              "grain {} left the machine at {} (no wall and no sink there) use a smaller contact.time_step_fraction, "
+              "or a lower machine.recoating_speed if it was thrown out by the blade",
+              g.id[i], place(g, i))};
     }
     if (!(g.vx[i] * g.vx[i] + g.vy[i] * g.vy[i] + g.vz[i] * g.vz[i] < fastest_grain * fastest_grain)) {
       return {1, fmt::format("grain {} flies faster than 1 km/s at {} (the motion is unstable) use a smaller "
@@ -173,10 +183,13 @@ Simulation::Fault Simulation::find_overlap() const {
     other = wall ? *wall : fmt::format("grain {}", g.id[j]);
   });
   if (other.empty()) return {};
-  return {worst, fmt::format("grain {} overlaps {} by {:.1f} % of its diameter at {} ({:.0f} % is the limit: contacts are too soft, or "
-                             "the step is too long) use a stiffer contact.youngs_modulus, a smaller contact.time_step_fraction or a "
-                             "lower machine.recoating_speed",
-                             g.id[grain], other, 100 * worst, place(g, grain), 100 * overlap_limit)};
+  return {
+      worst,
+      fmt::format(
+          "grain {} overlaps {} by {:.1f} % of its diameter at {} ({:.0f} % is the limit: contacts are too soft, or "
+          "the step is too long) use a stiffer contact.youngs_modulus, a smaller contact.time_step_fraction or a "
+          "lower machine.recoating_speed",
+          g.id[grain], other, 100 * worst, place(g, grain), 100 * overlap_limit)};
 }
 
 Simulation::Fault Simulation::find_fastest() const {
@@ -194,11 +207,13 @@ Simulation::Fault Simulation::find_fastest() const {
   double const speed = std::max(std::sqrt(fastest), fastest_wall_);
   double const contact_steps =
       hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) / motion_.time_step;
-  return {fastest, fmt::format("grain {} moves at {:.3g} m/s at {}: {:.3g} um a step, {:.1f} steps a contact (at most a tenth of the "
-                               "smallest radius, at least {:.0f} steps; the motion is unstable or not resolved) use a smaller "
-                               "contact.time_step_fraction or a stiffer contact.youngs_modulus",
-                               g.id[grain], std::sqrt(fastest), place(g, grain), std::sqrt(fastest) * motion_.time_step * 1e6,
-                               contact_steps, least_steps_a_contact)};
+  return {fastest,
+          fmt::format(
+              "grain {} moves at {:.3g} m/s at {}: {:.3g} um a step, {:.1f} steps a contact (at most a tenth of the "
+              "smallest radius, at least {:.0f} steps; the motion is unstable or not resolved) use a smaller "
+              "contact.time_step_fraction or a stiffer contact.youngs_modulus",
+              g.id[grain], std::sqrt(fastest), place(g, grain), std::sqrt(fastest) * motion_.time_step * 1e6,
+              contact_steps, least_steps_a_contact)};
 }
 
 }  // namespace layerloop::dem

@@ -4,10 +4,10 @@
 
 namespace layerloop::dem {
 namespace {
-constexpr double height = 0.01;         // of blade, gate and the space above the bed [m]
-constexpr double thrown_out = height;   // a grain up there does not come down while the layer is made [m]
-constexpr double beyond = 200e-6;       // platforms reach that much farther than grains should [m]
-constexpr double gate_width = 40e-6;    // [m]
+constexpr double height = 0.01;        // of blade, gate and the space above the bed [m]
+constexpr double thrown_out = height;  // a grain up there does not come down while the layer is made [m]
+constexpr double beyond = 200e-6;      // platforms reach that much farther than grains should [m]
+constexpr double gate_width = 40e-6;   // [m]
 
 RoundedBlock block(std::string name, double x0, double x1, double z0, double z1, double edge_radius) {
   double const most = 0.4999 * std::min(x1 - x0, z1 - z0);
@@ -41,11 +41,13 @@ Rig machine_rig(Case const& checked, TriangleSurface const& substrate, PowderBed
   double const edge = platform_edge_radius;
   Rig rig;
   rig.walls.substrate = substrate;
-  rig.walls.blocks = {block("the left platform", left - beyond, 0, bottom, 0, 1e-6),
-                      block("the floor of the accumulation zone", -edge, m.accumulation_length + edge, bottom, -m.accumulation_depth, 0),
-                      block("the platform between the zones", m.accumulation_length, m.deposition_begin(), bottom, 0, edge),
-                      block("the end platform", m.deposition_end(), sink, bottom, 0, edge),
-                      block("the rear wall", left - beyond, left, bottom, 2 * height, 0)};
+  rig.walls.blocks = {
+      block("the left platform", left - beyond, 0, bottom, 0, 1e-6),
+      block("the floor of the accumulation zone", -edge, m.accumulation_length + edge, bottom, -m.accumulation_depth,
+            0),
+      block("the platform between the zones", m.accumulation_length, m.deposition_begin(), bottom, 0, edge),
+      block("the end platform", m.deposition_end(), sink, bottom, 0, edge),
+      block("the rear wall", left - beyond, left, bottom, 2 * height, 0)};
   if (tools != Tools::none) {
     rig.walls.blocks.push_back(block("the blade", -m.blade_width, 0, m.blade_clearance, height, m.edge_radius));
   }

@@ -14,12 +14,14 @@ inline constexpr double platform_edge_radius = 20e-6;
 /// From the blade's last position to where the end platform ends [m].
 inline constexpr double sink_distance = 100e-6;
 
-/// Distance that the blade travels: its front starts at x = 0, its rear edge ends at the end of the deposition zone [m].
+/// Distance that the blade travels: its front starts at x = 0, its rear edge ends at the end of the deposition zone
+/// [m].
 double blade_stroke(MachineSettings const& machine);
 
-/// The machine: rear wall, left platform (its edge is sharp: nothing may lodge under the parked blade), accumulation pit, gap platform, deposition pit over the substrate, end platform with the
-/// sink behind it. The blade is parked with its front at x = 0 (it moves with Tools::moving_blade). The gate closes the
-/// accumulation zone at its far end while the feed is dosed; it stands on the gap platform, or on grains that lie there.
+/// The machine: rear wall, left platform (its edge is sharp: nothing may lodge under the parked blade), accumulation
+/// pit, gap platform, deposition pit over the substrate, end platform with the sink behind it. The blade is parked with
+/// its front at x = 0 (it moves with Tools::moving_blade). The gate closes the accumulation zone at its far end while
+/// the feed is dosed; it stands on the gap platform, or on grains that lie there.
 Rig machine_rig(Case const& checked, TriangleSurface const& substrate, PowderBed const& bed, Tools tools);
 
 }  // namespace layerloop::dem

@@ -23,7 +23,8 @@ struct Cells {
 Cells sort_into_cells(Grains const& g, double reach, double period) {
   auto const [x_low, x_high] = std::ranges::minmax(g.x);
   auto const [z_low, z_high] = std::ranges::minmax(g.z);
-  Cells cells{.x0 = x_low, .z0 = z_low, .size = reach, .size_y = period, .nx = 0, .ny = 1, .nz = 0, .begin = {}, .rows = {}};
+  Cells cells{
+      .x0 = x_low, .z0 = z_low, .size = reach, .size_y = period, .nx = 0, .ny = 1, .nz = 0, .begin = {}, .rows = {}};
   cells.nx = cells.column(x_high) + 1;
   cells.nz = cells.layer(z_high) + 1;
   if (period >= 3 * reach) {  // fewer than three strips would meet themselves around the period
@@ -39,7 +40,8 @@ Cells sort_into_cells(Grains const& g, double reach, double period) {
   for (std::size_t c = 1; c < cells.begin.size(); ++c) cells.begin[c] += cells.begin[c - 1];
   std::vector<std::int32_t> next(cells.begin.begin(), cells.begin.end() - 1);
   cells.rows.resize(g.size());
-  for (std::size_t i = 0; i < g.size(); ++i) cells.rows[static_cast<std::size_t>(next[cell[i]]++)] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < g.size(); ++i)
+    cells.rows[static_cast<std::size_t>(next[cell[i]]++)] = static_cast<std::int32_t>(i);
   return cells;
 }
 
@@ -71,8 +73,8 @@ void add_pairs_of(PairContacts& pairs, Grains const& g, Cells const& cells, std:
 
 void fill_pair_constants(PairContacts& pairs, Grains const& g, std::vector<ContactSpring> const& springs) {
   std::size_t const n = pairs.size();
-  for (auto* values : {&pairs.radius_sum, &pairs.reduced_radius, &pairs.reduced_mass, &pairs.inverse_diameter, &pairs.spring_x,
-                       &pairs.spring_y, &pairs.spring_z})
+  for (auto* values : {&pairs.radius_sum, &pairs.reduced_radius, &pairs.reduced_mass, &pairs.inverse_diameter,
+                       &pairs.spring_x, &pairs.spring_y, &pairs.spring_z})
     values->assign(n, 0.0);
   pairs.touching.assign(n, 0);
   pairs.action.assign(n, 0);
@@ -97,7 +99,8 @@ void list_pairs_by_grain(PairContacts& pairs, Grains const& g) {
   auto const for_each_side = [&](auto&& visit) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       if (static_cast<std::size_t>(pairs.first[k]) < g.owned) visit(static_cast<std::size_t>(pairs.first[k]), 2 * k);
-      if (static_cast<std::size_t>(pairs.second[k]) < g.owned) visit(static_cast<std::size_t>(pairs.second[k]), 2 * k + 1);
+      if (static_cast<std::size_t>(pairs.second[k]) < g.owned)
+        visit(static_cast<std::size_t>(pairs.second[k]), 2 * k + 1);
     }
   };
   for_each_side([&](std::size_t row, std::size_t) { ++pairs.begin[row + 1]; });
@@ -151,10 +154,10 @@ double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw cons
   double const* __restrict x = grains.x.data();
   double const* __restrict y = grains.y.data();
   double const* __restrict z = grains.z.data();
-  double const *__restrict vx = grains.vx.data(), *__restrict vy = grains.vy.data(), *__restrict vz = grains.vz.data();
-  double const *__restrict wx = grains.wx.data(), *__restrict wy = grains.wy.data(), *__restrict wz = grains.wz.data();
+  double const* __restrict vx = grains.vx.data(), * __restrict vy = grains.vy.data(), * __restrict vz = grains.vz.data();
+  double const* __restrict wx = grains.wx.data(), * __restrict wy = grains.wy.data(), * __restrict wz = grains.wz.data();
   double const* __restrict radius = grains.radius.data();
-  std::int32_t const *__restrict first = pairs.first.data(), *__restrict second = pairs.second.data();
+  std::int32_t const* __restrict first = pairs.first.data(), * __restrict second = pairs.second.data();
   double const* __restrict radius_sum = pairs.radius_sum.data();
   double const* __restrict reduced_radius = pairs.reduced_radius.data();
   double const* __restrict reduced_mass = pairs.reduced_mass.data();

@@ -13,15 +13,15 @@ struct alignas(32) PairAction {
   std::array<double, 4> force, torque_first, torque_second;
 };
 
-/// Pairs of grains closer than the skin, with their springs. The first grain of a pair has the lower id, so that a pair is
-/// computed the same way on every rank that holds it.
+/// Pairs of grains closer than the skin, with their springs. The first grain of a pair has the lower id, so that a pair
+/// is computed the same way on every rank that holds it.
 struct PairContacts {
   std::vector<std::int32_t> first, second;  ///< rows
   std::vector<double> radius_sum, reduced_radius, reduced_mass;
-  std::vector<double> inverse_diameter;     ///< of the smaller grain
+  std::vector<double> inverse_diameter;              ///< of the smaller grain
   std::vector<double> spring_x, spring_y, spring_z;  ///< valid while `touching`
-  std::vector<char> touching;               ///< at the last evaluation
-  std::vector<std::int32_t> action;         ///< row in `actions`; 0 (nothing) when not touching
+  std::vector<char> touching;                        ///< at the last evaluation
+  std::vector<std::int32_t> action;                  ///< row in `actions`; 0 (nothing) when not touching
   std::vector<PairAction> actions;
 
   /// Pairs of every owned grain in order of the partner's id: 2 * pair + (1 when the grain is the second).
@@ -30,7 +30,8 @@ struct PairContacts {
   std::size_t size() const { return first.size(); }
 };
 
-/// Lists all pairs with an owned grain whose surfaces are closer than `skin`; y wraps with `period`. Springs are taken over.
+/// Lists all pairs with an owned grain whose surfaces are closer than `skin`; y wraps with `period`. Springs are taken
+/// over.
 void build_pairs(PairContacts& pairs, Grains const& grains, double skin, double period,
                  std::vector<ContactSpring> const& springs);
 
@@ -45,7 +46,8 @@ double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw cons
 inline void add_pair_actions(PairContacts const& pairs, std::size_t row, double* force, double* torque) {
   for (std::int32_t e = pairs.begin[row]; e < pairs.begin[row + 1]; ++e) {
     std::int32_t const entry = pairs.entries[static_cast<std::size_t>(e)];
-    PairAction const& action = pairs.actions[static_cast<std::size_t>(pairs.action[static_cast<std::size_t>(entry >> 1)])];
+    PairAction const& action =
+        pairs.actions[static_cast<std::size_t>(pairs.action[static_cast<std::size_t>(entry >> 1)])];
     bool const second = entry & 1;
     double const sign = second ? -1.0 : 1.0;
     double const* turn = second ? action.torque_second.data() : action.torque_first.data();

@@ -8,7 +8,8 @@ namespace layerloop::dem {
 namespace {
 
 double gap(PowderBed const& bed, double period, std::size_t i, std::size_t j, double lowered) {
-  double const dx = bed.x[i] - bed.x[j], dy = std::remainder(bed.y[i] - bed.y[j], period), dz = bed.z[i] - lowered - bed.z[j];
+  double const dx = bed.x[i] - bed.x[j], dy = std::remainder(bed.y[i] - bed.y[j], period),
+               dz = bed.z[i] - lowered - bed.z[j];
   return std::sqrt(dx * dx + dy * dy + dz * dz) - bed.radius[i] - bed.radius[j];
 }
 
@@ -30,11 +31,12 @@ std::vector<std::size_t> by_x(PowderBed const& bed) {
 }
 
 /// Would moving grain i, lowered, press more than now on a grain that stays?
-bool hits_grain(PowderBed const& bed, std::vector<std::size_t> const& rows, std::vector<char> const& moves, std::size_t i,
-                double lowered, double period, double largest) {
+bool hits_grain(PowderBed const& bed, std::vector<std::size_t> const& rows, std::vector<char> const& moves,
+                std::size_t i, double lowered, double period, double largest) {
   double const reach = bed.radius[i] + largest;
   auto const x_of = [&](std::size_t row) { return bed.x[row]; };
-  for (auto at = std::ranges::lower_bound(rows, bed.x[i] - reach, {}, x_of); at != rows.end() && bed.x[*at] < bed.x[i] + reach; ++at) {
+  for (auto at = std::ranges::lower_bound(rows, bed.x[i] - reach, {}, x_of);
+       at != rows.end() && bed.x[*at] < bed.x[i] + reach; ++at) {
     if (moves[*at]) continue;
     double const then = gap(bed, period, i, *at, lowered);
     if (then < 0 && then < gap(bed, period, i, *at, 0)) return true;
@@ -55,7 +57,8 @@ void lower_plate(PowderBed& bed, Case const& checked) {
 
   std::vector<char> moves(bed.size());
   for (std::size_t i = 0; i < bed.size(); ++i)
-    moves[i] = bed.x[i] > machine.deposition_begin() && bed.x[i] < machine.deposition_end() && !hits_wall(bed, blocks, i, by);
+    moves[i] =
+        bed.x[i] > machine.deposition_begin() && bed.x[i] < machine.deposition_end() && !hits_wall(bed, blocks, i, by);
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t i = 0; i < bed.size(); ++i) {

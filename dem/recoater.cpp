@@ -27,8 +27,9 @@ std::string raised_solid(MachineSettings const& machine, TriangleSurface const& 
     if (v.z() > highest.z()) highest = v;
   }
   if (count == 0) return {};
-  return fmt::format("solid stands {:.2f} um above the blade's lower edge at x = {:.1f}, y = {:.1f} um ({} mesh points are above it)",
-                     (highest.z() - machine.blade_clearance) * 1e6, highest.x() * 1e6, highest.y() * 1e6, count);
+  return fmt::format(
+      "solid stands {:.2f} um above the blade's lower edge at x = {:.1f}, y = {:.1f} um ({} mesh points are above it)",
+      (highest.z() - machine.blade_clearance) * 1e6, highest.x() * 1e6, highest.y() * 1e6, count);
 }
 
 double median_radius(PowderBed const& bed) {
@@ -57,16 +58,17 @@ void note(SpreadOutcome& outcome, Simulation const& simulation) {
 }
 }  // namespace
 
-SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, Communicator const& communicator,
-                     bool show_progress) {
+SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate,
+                     Communicator const& communicator, bool show_progress) {
   MachineSettings const& machine = checked.machine;
   Motion const motion = motion_of(checked);
   SpreadOutcome outcome;
   outcome.blade_note = raised_solid(machine, substrate);
   if (!outcome.blade_note.empty() && machine.blade_collision == BladeCollision::stop) {
-    throw PhysicsError(outcome.blade_note +
-                       " (a rigid blade would hit it) use a larger machine.layer_thickness or machine.blade_clearance, less laser "
-                       "power, or machine.blade_collision = \"report\" to go on");
+    throw PhysicsError(
+        outcome.blade_note +
+        " (a rigid blade would hit it) use a larger machine.layer_thickness or machine.blade_clearance, less laser "
+        "power, or machine.blade_collision = \"report\" to go on");
   }
   PowderBed const before = bed;
   double const smallest = *std::ranges::min_element(bed.radius);
@@ -79,7 +81,8 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   stroke.scatter(bed);
   double const duration = blade_stroke(machine) / machine.recoating_speed;
   Progress progress("spread", duration, show_progress && communicator.is_root());
-  for (auto left = static_cast<std::int64_t>(std::ceil(duration / motion.time_step)); left > 0; left -= steps_between_progress) {
+  for (auto left = static_cast<std::int64_t>(std::ceil(duration / motion.time_step)); left > 0;
+       left -= steps_between_progress) {
     stroke.advance(std::min(left, steps_between_progress));
     progress.update(stroke.time());
   }
@@ -89,7 +92,8 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   std::vector<char> keep(bed.size());
   for (std::size_t i = 0; i < bed.size(); ++i) keep[i] = bed.x[i] >= 0 && bed.x[i] <= machine.deposition_end();
   bed.retain(keep);
-  if (bed.size() == 0) throw PhysicsError("the blade swept every grain away (no layer is left) raise powder.particles or layer_thickness");
+  if (bed.size() == 0)
+    throw PhysicsError("the blade swept every grain away (no layer is left) raise powder.particles or layer_thickness");
   Simulation rest(motion, machine_rig(checked, substrate, bed, Tools::none), communicator);
   rest.scatter(bed);
   settle(rest, longest_settling, "settle", show_progress && communicator.is_root());

@@ -11,16 +11,17 @@ namespace layerloop::dem {
 
 /// What one stroke of the blade did.
 struct SpreadOutcome {
-  std::int64_t overflow_grains = 0;  ///< taken out: over the sink, thrown high, or beside the zones when the blade has passed
-  std::int64_t nipped_grains = 0;    ///< of the overflow: crushed between blade and platform, see Simulation
-  double overflow_volume = 0;        ///< [m^3]
-  std::string blade_note;            ///< empty, or where and how far raised solid stands in the blade's way
+  std::int64_t overflow_grains =
+      0;  ///< taken out: over the sink, thrown high, or beside the zones when the blade has passed
+  std::int64_t nipped_grains = 0;  ///< of the overflow: crushed between blade and platform, see Simulation
+  double overflow_volume = 0;      ///< [m^3]
+  std::string blade_note;          ///< empty, or where and how far raised solid stands in the blade's way
   std::int64_t steps = 0;
-  double time_step = 0;              ///< [s]
-  double largest_overlap = 0;        ///< over the grain's diameter
-  double blade_force = 0;            ///< largest force of the grains against the stroke [N], sampled every few steps
-  double bond_number = 0;            ///< of the median grain by number: SJKR2 pull-off force over weight
-  double steps_per_contact = 0;      ///< of the smallest grain at the recoating speed
+  double time_step = 0;          ///< [s]
+  double largest_overlap = 0;    ///< over the grain's diameter
+  double blade_force = 0;        ///< largest force of the grains against the stroke [N], sampled every few steps
+  double bond_number = 0;        ///< of the median grain by number: SJKR2 pull-off force over weight
+  double steps_per_contact = 0;  ///< of the smallest grain at the recoating speed
 };
 
 /// Moves the blade over accumulation zone, gap and deposition zone, clears the end platform and lets the layer settle.
@@ -28,12 +29,13 @@ struct SpreadOutcome {
 /// Collective; every rank gets the same bed.
 /// \throws PhysicsError raised solid and BladeCollision::stop; a guard of Simulation
 /// \throws StoppedBySignal
-SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, Communicator const& communicator,
-                     bool show_progress);
+SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate,
+                     Communicator const& communicator, bool show_progress);
 
-/// Lowers the grains of the deposition zone with the plate, by one layer thickness (the caller lowers plate and part). A
-/// grain that would be pushed into a wall, or onto a grain that stays, stays too and falls in later: no overlap is made.
-/// Springs between what moved and what did not, and all springs to the substrate (which may be a new mesh), are dropped.
+/// Lowers the grains of the deposition zone with the plate, by one layer thickness (the caller lowers plate and part).
+/// A grain that would be pushed into a wall, or onto a grain that stays, stays too and falls in later: no overlap is
+/// made. Springs between what moved and what did not, and all springs to the substrate (which may be a new mesh), are
+/// dropped.
 void lower_plate(PowderBed& bed, Case const& checked);
 
 }  // namespace layerloop::dem

@@ -30,8 +30,8 @@ Motion motion_of(Case const& checked) {
           .at_walls = wall_law(checked.contact),
           .contact = checked.contact,
           .density = checked.material.density,
-          .time_step = checked.contact.time_step_fraction *
-                       rayleigh_time(smallest, checked.material.density, checked.contact)};
+          .time_step =
+              checked.contact.time_step_fraction * rayleigh_time(smallest, checked.material.density, checked.contact)};
 }
 
 Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
@@ -51,15 +51,16 @@ void Simulation::scatter(PowderBed const& bed) {
   largest_radius_ = largest;
   skin_ = skin_over_smallest_radius * smallest;
   if (rig_.width < 4 * largest + 2 * skin_) {
-    throw InputError(fmt::format("the bed is {:.3g} um wide (a grain of {:.3g} um would meet itself around the period) "
-                                 "make machine.width at least {:.3g} um",
-                                 rig_.width * 1e6, 2e6 * largest, 4.2e6 * largest + 2e6 * skin_));
+    throw InputError(
+        fmt::format("the bed is {:.3g} um wide (a grain of {:.3g} um would meet itself around the period) "
+                    "make machine.width at least {:.3g} um",
+                    rig_.width * 1e6, 2e6 * largest, 4.2e6 * largest + 2e6 * skin_));
   }
   triangle_grid_ = TriangleGrid(rig_.walls.substrate, 2 * largest);
   Range const own = share(bed.size(), communicator_.rank(), communicator_.size());
   for (std::size_t i = own.from; i < own.to; ++i) {
-    grains_.push_back({bed.id[i], bed.x[i], bed.y[i], bed.z[i], bed.vx[i], bed.vy[i], bed.vz[i], bed.wx[i], bed.wy[i], bed.wz[i],
-                       bed.radius[i], bed.material[i], 0},
+    grains_.push_back({bed.id[i], bed.x[i], bed.y[i], bed.z[i], bed.vx[i], bed.vy[i], bed.vz[i], bed.wx[i], bed.wy[i],
+                       bed.wz[i], bed.radius[i], bed.material[i], 0},
                       motion_.density);
   }
   grains_.owned = grains_.size();
@@ -83,7 +84,9 @@ void Simulation::rebuild() {
   std::erase_if(records, [](GrainRecord const& r) { return r.leaves != 0; });
 
   double const cell = 2 * largest_radius_;  // neighbours in space are neighbours in memory
-  auto const place = [&](GrainRecord const& r) { return std::tuple(std::floor(r.x / cell), std::floor(r.z / cell), r.y, r.id); };
+  auto const place = [&](GrainRecord const& r) {
+    return std::tuple(std::floor(r.x / cell), std::floor(r.z / cell), r.y, r.id);
+  };
   std::ranges::sort(records, {}, place);
   grains_.clear();
   for (GrainRecord const& record : records) grains_.push_back(record, motion_.density);
@@ -121,7 +124,8 @@ void Simulation::run_steps(std::int64_t count) {
     Range const own = share(grains_.owned, thread, threads), pairs = share(pairs_.size(), thread, threads);
     auto const& near_walls = wall_contacts_.grain;
     auto const wall_entry = [&](std::size_t row) {
-      return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) - near_walls.begin());
+      return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
+                                      near_walls.begin());
     };
     Range const walls{wall_entry(own.from), wall_entry(own.to)};
     Watch watch;
@@ -138,8 +142,8 @@ void Simulation::run_steps(std::int64_t count) {
       double const now = static_cast<double>(steps_ + s + 1) * dt;
       double const pair_overlap =
           evaluate_pairs(pairs_, grains_, motion_.between_grains, rig_.width, dt, pairs.from, pairs.to);
-      WallReport const report = evaluate_walls(wall_contacts_, batches_[static_cast<std::size_t>(thread)], grains_, rig_.walls,
-                                               motion_.at_walls, now, dt, walls.from, walls.to);
+      WallReport const report = evaluate_walls(wall_contacts_, batches_[static_cast<std::size_t>(thread)], grains_,
+                                               rig_.walls, motion_.at_walls, now, dt, walls.from, walls.to);
       watch.overlap = std::max({watch.overlap, pair_overlap, report.worst_overlap});
       pushed = report.pushed_back;
 #pragma omp barrier
@@ -158,8 +162,8 @@ void Simulation::run_steps(std::int64_t count) {
 }
 
 void Simulation::drift(std::size_t from, std::size_t to) {
-  double *__restrict x = grains_.x.data(), *__restrict y = grains_.y.data(), *__restrict z = grains_.z.data();
-  double const *__restrict vx = grains_.vx.data(), *__restrict vy = grains_.vy.data(), *__restrict vz = grains_.vz.data();
+  double* __restrict x = grains_.x.data(), * __restrict y = grains_.y.data(), * __restrict z = grains_.z.data();
+  double const* __restrict vx = grains_.vx.data(), * __restrict vy = grains_.vy.data(), * __restrict vz = grains_.vz.data();
   double const dt = motion_.time_step, width = rig_.width;
 #pragma omp simd
   for (std::size_t i = from; i < to; ++i) {
@@ -234,7 +238,8 @@ PowderBed Simulation::gather() {
 std::int64_t Simulation::count_faster_than(double speed) const {
   std::int64_t count = 0;
   for (std::size_t i = 0; i < grains_.owned; ++i) {
-    double const squared = grains_.vx[i] * grains_.vx[i] + grains_.vy[i] * grains_.vy[i] + grains_.vz[i] * grains_.vz[i];
+    double const squared =
+        grains_.vx[i] * grains_.vx[i] + grains_.vy[i] * grains_.vy[i] + grains_.vz[i] * grains_.vz[i];
     count += squared > speed * speed;
   }
   return communicator_.sum(count);

@@ -20,11 +20,11 @@ namespace layerloop::dem {
 /// What the grains move in.
 struct Rig {
   Walls walls;
-  double width = 1;                       ///< period along y [m]; at least two diameters of the largest grain
+  double width = 1;  ///< period along y [m]; at least two diameters of the largest grain
   std::array<double, 2> x_range{-1, 1}, z_range{-1, 1};  ///< a centre beyond them is a lost grain [m]
   /// Grains whose centre passes these are taken out: overflow [m]
   double sink_x = std::numeric_limits<double>::infinity(), sink_z = std::numeric_limits<double>::infinity();
-  Vec3 gravity{0, 0, -9.81};              ///< [m/s^2]
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
 };
 
 /// Settings of the motion; see motion_of() for those of a case.
@@ -43,25 +43,27 @@ inline constexpr double fastest_grain = 1000;  ///< [m/s]: nothing in a recoater
 /// Discrete elements: scatter a bed, advance, gather it back.
 ///
 /// Velocity Verlet (kick, drift, kick) with the second kick of a step and the first of the next made in one, so the
-/// velocities in a bed are those half a step before its positions; forces see that velocity. A gathered bed holds the whole
-/// state: going on from it gives the same bits as not stopping.
+/// velocities in a bed are those half a step before its positions; forces see that velocity. A gathered bed holds the
+/// whole state: going on from it gives the same bits as not stopping.
 ///
-/// The same bits for any number of ranks and threads: every rank computes all contacts of its own grains, pairs in order of
-/// id, and adds them up for each grain in order of the partner's id; pairs that do not touch add nothing, so neither slices nor
-/// the time of a rebuild matter.
+/// The same bits for any number of ranks and threads: every rank computes all contacts of its own grains, pairs in
+/// order of id, and adds them up for each grain in order of the partner's id; pairs that do not touch add nothing, so
+/// neither slices nor the time of a rebuild matter.
 ///
-/// A rigid moving blade nips grains against the edges of the platforms, alone or in a chain (friction holds them in the wedge).
-/// In a machine the blade yields or a grain is cut; here, while a wall moves, a grain that is overlapped by more than 2 % of its
-/// diameter is taken out (the smaller of a pair). What it would
-/// store in so soft a contact shoots it away at a metre a second. An unstable motion reaches the guard below before a look.
+/// A rigid moving blade nips grains against the edges of the platforms, alone or in a chain (friction holds them in the
+/// wedge). In a machine the blade yields or a grain is cut; here, while a wall moves, a grain that is overlapped by
+/// more than 2 % of its diameter is taken out (the smaller of a pair). What it would store in so soft a contact shoots
+/// it away at a metre a second. An unstable motion reaches the guard below before a look.
 ///
-/// Guards (PhysicsError, on all ranks): a grain outside the rig, a value that is not finite, an overlap beyond 5 % of the
-/// diameter, a step longer than a tenth of the smallest radius, a contact that lasts fewer than 8 steps at the speeds present.
+/// Guards (PhysicsError, on all ranks): a grain outside the rig, a value that is not finite, an overlap beyond 5 % of
+/// the diameter, a step longer than a tenth of the smallest radius, a contact that lasts fewer than 8 steps at the
+/// speeds present.
 class Simulation {
  public:
   Simulation(Motion motion, Rig rig, Communicator const& communicator);
 
-  /// Takes over grains and springs; the clock starts at 0. Collective. \throws InputError width too small for the grains
+  /// Takes over grains and springs; the clock starts at 0. Collective. \throws InputError width too small for the
+  /// grains
   void scatter(PowderBed const& bed);
   /// Collective. \throws PhysicsError a guard; StoppedBySignal
   void advance(std::int64_t steps);
@@ -71,12 +73,14 @@ class Simulation {
   double time() const { return static_cast<double>(steps_) * motion_.time_step; }
   double time_step() const { return motion_.time_step; }
   std::int64_t steps() const { return steps_; }
-  std::int64_t grains() const { return grain_count_; }        ///< overflow left out
+  std::int64_t grains() const { return grain_count_; }         ///< overflow left out
   double largest_overlap() const { return largest_overlap_; }  ///< over the diameter, since scatter
-  double blade_force() const { return blade_force_; }          ///< x force on moving walls, largest since scatter [N], sampled
-  std::int64_t nipped() const { return nipped_; }             ///< grains taken out because a moving wall crushed them, since scatter
+  double blade_force() const { return blade_force_; }  ///< x force on moving walls, largest since scatter [N], sampled
+  std::int64_t nipped() const {
+    return nipped_;
+  }  ///< grains taken out because a moving wall crushed them, since scatter
   std::int64_t rebuilds() const { return rebuilds_; }
-  std::int64_t touching_pairs() const;                         ///< Collective.
+  std::int64_t touching_pairs() const;  ///< Collective.
   /// Grains faster than `speed` [m/s]. Collective.
   std::int64_t count_faster_than(double speed) const;
 
@@ -120,8 +124,8 @@ class Simulation {
   Grains grains_;
   PairContacts pairs_;
   WallContacts wall_contacts_;
-  std::vector<WallBatch> batches_;  ///< one a thread
-  std::vector<std::int32_t> wall_entry_;  ///< of each owned grain in wall_contacts_; -1: none
+  std::vector<WallBatch> batches_;            ///< one a thread
+  std::vector<std::int32_t> wall_entry_;      ///< of each owned grain in wall_contacts_; -1: none
   std::vector<ContactSpring> first_springs_;  ///< of the scattered bed, until the first rebuild
   std::vector<double> x_built_, y_built_, z_built_;
   Watch watch_;

@@ -18,7 +18,8 @@ bool has_feature(TriangleSurface const& surface, std::int32_t triangle, Triangle
 }
 
 /// Does the surface come nearer to the sphere than at `contact` in a triangle that shares its edge or corner?
-bool is_hidden(TriangleSurface const& surface, std::vector<TriangleContact> const& contacts, TriangleContact const& contact) {
+bool is_hidden(TriangleSurface const& surface, std::vector<TriangleContact> const& contacts,
+               TriangleContact const& contact) {
   if (contact.corners == 7) return false;
   return std::ranges::any_of(contacts, [&](TriangleContact const& other) {
     if (other.triangle == contact.triangle || !has_feature(surface, other.triangle, contact)) return false;
@@ -68,13 +69,17 @@ void merge_contacts(TriangleSurface const& surface, std::vector<TriangleContact>
     double const da = std::abs(a.distance), db = std::abs(b.distance);
     return da != db ? da < db : a.triangle < b.triangle;
   });
-  // the far side of a thin place is behind the near side: only a centre that is inside the solid has a back face nearest
-  if (contacts.front().distance >= 0) std::erase_if(contacts, [](TriangleContact const& contact) { return contact.distance < 0; });
+  // the far side of a thin place is behind the near side: only a centre that is inside the solid has a back face
+  // nearest
+  if (contacts.front().distance >= 0)
+    std::erase_if(contacts, [](TriangleContact const& contact) { return contact.distance < 0; });
   for (TriangleContact& contact : contacts) contact.hidden = is_hidden(surface, contacts, contact);
   std::erase_if(contacts, [](TriangleContact const& contact) { return contact.hidden; });
   std::size_t kept = 0;
   for (TriangleContact const& contact : contacts) {
-    auto const same_place = [&](TriangleContact const& other) { return other.normal.dot(contact.normal) > same_normal; };
+    auto const same_place = [&](TriangleContact const& other) {
+      return other.normal.dot(contact.normal) > same_normal;
+    };
     if (std::none_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(kept), same_place))
       contacts[kept++] = contact;
   }
@@ -103,7 +108,8 @@ TriangleGrid::TriangleGrid(TriangleSurface const& surface, double cell) : cell_(
   begin_ = count;
   triangles_.resize(static_cast<std::size_t>(begin_.back()));
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for_cells_of(t, [&](std::size_t at) { triangles_[static_cast<std::size_t>(count[at]++)] = static_cast<std::int32_t>(t); });
+    for_cells_of(
+        t, [&](std::size_t at) { triangles_[static_cast<std::size_t>(count[at]++)] = static_cast<std::int32_t>(t); });
 }
 
 std::array<std::int32_t, 3> TriangleGrid::cell_of(Vec3 const& p) const {

@@ -19,9 +19,9 @@ TrianglePoint nearest_on_triangle(Vec3 const& a, Vec3 const& b, Vec3 const& c, V
 /// A triangle that a sphere overlaps.
 struct TriangleContact {
   std::int32_t triangle;
-  unsigned corners;  ///< as in TrianglePoint
-  double distance;   ///< of the sphere's centre [m]; negative behind a face
-  Vec3 normal;       ///< towards the sphere's centre
+  unsigned corners;     ///< as in TrianglePoint
+  double distance;      ///< of the sphere's centre [m]; negative behind a face
+  Vec3 normal;          ///< towards the sphere's centre
   bool hidden = false;  ///< set by merge_contacts while it works
 };
 
@@ -29,7 +29,8 @@ struct TriangleContact {
 TriangleContact contact_with(TriangleSurface const& surface, std::int32_t t, Vec3 const& p);
 
 /// Keeps, of all triangles that a sphere overlaps, one per place where the distance to the surface has a minimum:
-/// - the nearest point lies on an edge or corner: only if no triangle with that edge or corner is nearer still (else the
+/// - the nearest point lies on an edge or corner: only if no triangle with that edge or corner is nearer still (else
+/// the
 ///   surface goes on towards the sphere there), and only once among those that are as near;
 /// - two places with nearly the same normal (within 18 degrees) count once, the nearer one: a smooth surface cut into
 ///   triangles pushes once, not once a triangle.

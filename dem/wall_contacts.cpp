@@ -8,7 +8,8 @@ namespace {
 
 Vec3 centre(Grains const& g, std::size_t i) { return {g.x[i], g.y[i], g.z[i]}; }
 
-/// The triangles that grain `w` overlaps now, merged; the others are put to sleep for as long as they cannot be reached.
+/// The triangles that grain `w` overlaps now, merged; the others are put to sleep for as long as they cannot be
+/// reached.
 void find_touched(WallContacts& contacts, std::size_t w, Grains const& g, TriangleSurface const& surface,
                   std::vector<TriangleContact>& touched) {
   touched.clear();
@@ -27,14 +28,15 @@ void find_touched(WallContacts& contacts, std::size_t w, Grains const& g, Triang
 }
 
 bool share_corner(TriangleSurface const& surface, std::int64_t a, std::int64_t b) {
-  auto const &first = surface.triangles[static_cast<std::size_t>(a)], &second = surface.triangles[static_cast<std::size_t>(b)];
+  auto const &first = surface.triangles[static_cast<std::size_t>(a)],
+             &second = surface.triangles[static_cast<std::size_t>(b)];
   return std::ranges::find_first_of(first, second) != first.end();
 }
 
 /// The spring that a contact goes on with: its own, or, where a grain rolls from one triangle to the next, that of a
 /// neighbouring triangle which it has just left.
-WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t key, std::vector<TriangleContact> const& touched,
-                     TriangleSurface const& surface) {
+WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t key,
+                     std::vector<TriangleContact> const& touched, TriangleSurface const& surface) {
   auto const begin = contacts.springs.begin() + contacts.spring_begin[w], end = begin + contacts.spring_count[w];
   auto const own = std::find_if(begin, end, [&](WallSpring const& s) { return s.key == key; });
   if (own != end) return *own;
@@ -77,8 +79,8 @@ void append(WallBatch& b, Grains const& g, std::size_t i, double distance, Vec3 
 }
 
 void clear(WallBatch& b) {
-  for (auto* v : {&b.overlap, &b.radius, &b.mass, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx, &b.sy, &b.sz, &b.wx, &b.wy,
-                  &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
+  for (auto* v : {&b.overlap, &b.radius, &b.mass, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx, &b.sy, &b.sz, &b.wx,
+                  &b.wy, &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
     v->clear();
   b.key.clear();
 }
@@ -93,14 +95,15 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   double const *sx = b.sx.data(), *sy = b.sy.data(), *sz = b.sz.data();
   double const *wx = b.wx.data(), *wy = b.wy.data(), *wz = b.wz.data();
   double *ux = b.spring_x.data(), *uy = b.spring_y.data(), *uz = b.spring_z.data();
-  double *fx = b.fx.data(), *fy = b.fy.data(), *fz = b.fz.data(), *tx = b.tx.data(), *ty = b.ty.data(), *tz = b.tz.data();
+  double *fx = b.fx.data(), *fy = b.fy.data(), *fz = b.fz.data(), *tx = b.tx.data(), *ty = b.ty.data(),
+         *tz = b.tz.data();
   ContactLaw const law_here = law;
 #pragma omp simd
   for (std::size_t c = 0; c < n; ++c) {
     double const arm = radius[c] - 0.5 * overlap[c];
     ContactAction const a = act(law_here,
-                                {overlap[c], radius[c], mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c], sz[c],
-                                 wx[c], wy[c], wz[c], ux[c], uy[c], uz[c]},
+                                {overlap[c], radius[c], mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c],
+                                 sz[c], wx[c], wy[c], wz[c], ux[c], uy[c], uz[c]},
                                 dt);
     ux[c] = a.spring_x;
     uy[c] = a.spring_y;
@@ -127,15 +130,15 @@ std::vector<std::int32_t> blocks_near(Walls const& walls, Grains const& g, std::
 }  // namespace
 
 void WallBatch::reserve(std::size_t contacts) {
-  for (auto* v : {&overlap, &radius, &mass, &nx, &ny, &nz, &vx, &vy, &vz, &sx, &sy, &sz, &wx, &wy, &wz, &spring_x, &spring_y,
-                  &spring_z, &fx, &fy, &fz, &tx, &ty, &tz})
+  for (auto* v : {&overlap, &radius, &mass, &nx,       &ny,       &nz,       &vx, &vy, &vz, &sx, &sy, &sz,
+                  &wx,      &wy,     &wz,   &spring_x, &spring_y, &spring_z, &fx, &fy, &fz, &tx, &ty, &tz})
     v->reserve(contacts);
   key.reserve(contacts);
   touched.reserve(256);
 }
 
-void build_wall_contacts(WallContacts& contacts, Grains const& g, Walls const& walls, TriangleGrid const& grid, double skin,
-                         double time, std::vector<ContactSpring> const& springs) {
+void build_wall_contacts(WallContacts& contacts, Grains const& g, Walls const& walls, TriangleGrid const& grid,
+                         double skin, double time, std::vector<ContactSpring> const& springs) {
   WallContacts& c = contacts;
   for (auto* list : {&c.grain, &c.blocks, &c.spring_count}) list->clear();
   c.triangles.clear();
@@ -182,8 +185,8 @@ void append_springs(WallContacts const& c, Grains const& g, std::vector<LocalSpr
   }
 }
 
-WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, Walls const& walls, ContactLaw const& law,
-                          double time, double dt, std::size_t from, std::size_t to) {
+WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, Walls const& walls,
+                          ContactLaw const& law, double time, double dt, std::size_t from, std::size_t to) {
   WallContacts& c = contacts;
   WallReport report;
   clear(batch);
@@ -210,11 +213,13 @@ WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const
     c.force[w] = c.torque[w] = {};
     double const diameter = 2 * g.radius[static_cast<std::size_t>(c.grain[w])];
     for (std::int32_t s = 0; s < c.spring_count[w]; ++s, ++at) {
-      c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)] = {batch.key[at], batch.spring_x[at], batch.spring_y[at],
-                                                                    batch.spring_z[at]};
-      double const force[3] = {batch.fx[at], batch.fy[at], batch.fz[at]}, torque[3] = {batch.tx[at], batch.ty[at], batch.tz[at]};
+      c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)] = {batch.key[at], batch.spring_x[at],
+                                                                    batch.spring_y[at], batch.spring_z[at]};
+      double const force[3] = {batch.fx[at], batch.fy[at], batch.fz[at]},
+                   torque[3] = {batch.tx[at], batch.ty[at], batch.tz[at]};
       for (std::size_t d = 0; d < 3; ++d) c.force[w][d] += force[d], c.torque[w][d] += torque[d];
-      bool const moves = batch.key[at] < first_triangle_key && walls.blocks[static_cast<std::size_t>(batch.key[at])].velocity != 0;
+      bool const moves =
+          batch.key[at] < first_triangle_key && walls.blocks[static_cast<std::size_t>(batch.key[at])].velocity != 0;
       report.worst_overlap = std::max(report.worst_overlap, batch.overlap[at] / diameter);
       if (moves) report.pushed_back -= std::llround(batch.fx[at] * 1e18);
     }

@@ -25,13 +25,13 @@ struct WallSpring {
 /// Grains near walls, what they may touch, and their springs. Grains are in ascending order of row; the arrays of
 /// contacts hold room for every candidate, so that a step allocates nothing and loses no wall.
 struct WallContacts {
-  std::vector<std::int32_t> grain;            ///< row
-  std::vector<double> path;                   ///< travelled since the rebuild, an upper bound [m]
-  std::vector<std::int32_t> block_begin;      ///< of each grain in `blocks`
+  std::vector<std::int32_t> grain;        ///< row
+  std::vector<double> path;               ///< travelled since the rebuild, an upper bound [m]
+  std::vector<std::int32_t> block_begin;  ///< of each grain in `blocks`
   std::vector<std::int32_t> blocks;
-  std::vector<std::int32_t> triangle_begin;   ///< of each grain in `triangles`
+  std::vector<std::int32_t> triangle_begin;  ///< of each grain in `triangles`
   std::vector<TriangleCandidate> triangles;
-  std::vector<std::int32_t> spring_begin;     ///< room of each grain in `springs`
+  std::vector<std::int32_t> spring_begin;  ///< room of each grain in `springs`
   std::vector<std::int32_t> spring_count;
   std::vector<WallSpring> springs;
   std::vector<std::array<double, 4>> force, torque;  ///< per grain of `grain`
@@ -39,7 +39,8 @@ struct WallContacts {
 
 /// Contacts of one thread's grains in one step, as arrays. Room for all candidates.
 struct WallBatch {
-  std::vector<double> overlap, radius, mass, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x, spring_y, spring_z;
+  std::vector<double> overlap, radius, mass, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x, spring_y,
+      spring_z;
   std::vector<double> fx, fy, fz, tx, ty, tz;
   std::vector<std::int64_t> key;
   std::vector<TriangleContact> touched;  ///< scratch of one grain
@@ -48,8 +49,8 @@ struct WallBatch {
 };
 
 struct WallReport {
-  double worst_overlap = 0;          ///< over the grain's diameter
-  std::int64_t pushed_back = 0;      ///< x force of grains on moving blocks, in units of 1e-18 N: sums exactly in any order
+  double worst_overlap = 0;      ///< over the grain's diameter
+  std::int64_t pushed_back = 0;  ///< x force of grains on moving blocks, in units of 1e-18 N: sums exactly in any order
 };
 
 /// \param shift  how far moving blocks have gone is velocity * time

@@ -9,8 +9,9 @@
 
 namespace layerloop::dem {
 
-/// A bar with rounded edges: a rectangle in x-z with quarter circles at its corners, endless along y. Planes and cylinders in
-/// one primitive: a grain has at most one contact with it, and none of the steps that a row of triangles would have.
+/// A bar with rounded edges: a rectangle in x-z with quarter circles at its corners, endless along y. Planes and
+/// cylinders in one primitive: a grain has at most one contact with it, and none of the steps that a row of triangles
+/// would have.
 struct RoundedBlock {
   std::string name;
   double x0 = 0, x1 = 0, z0 = 0, z1 = 0;  ///< [m] at time 0
@@ -37,8 +38,8 @@ inline WallPoint nearest(RoundedBlock const& block, double shift, double x, doub
   return {-least - e, 0, -1};
 }
 
-/// Everything that holds grains. Springs of walls carry the key -1 - wall key: blocks by their place in the list, triangle t
-/// of the substrate first_triangle_key + t.
+/// Everything that holds grains. Springs of walls carry the key -1 - wall key: blocks by their place in the list,
+/// triangle t of the substrate first_triangle_key + t.
 struct Walls {
   std::vector<RoundedBlock> blocks;
   TriangleSurface substrate;  ///< closed, reaching beyond the periodic width; may be empty
