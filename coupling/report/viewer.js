@@ -8,14 +8,18 @@
   const canvas = root.querySelector('canvas');
   const data = JSON.parse(document.getElementById('bed-data').textContent);
   const counts = document.querySelector('.viewer-note .counts');
-  const say = (words) => { const m = root.querySelector('.message'); m.textContent = words; m.hidden = false; };
+  const sorry = (words) => {
+    const message = root.querySelector('.message');
+    root.querySelector('.controls').hidden = root.querySelector('.key').hidden = true;
+    message.textContent = words;
+    message.hidden = false;
+  };
   if (data.grains < data.all_grains) counts.textContent += `Showing ${data.grains} of ${data.all_grains} grains, those nearest to the middle of the plate. `;
   if (data.triangles < data.all_triangles) counts.textContent += `The mesh of ${data.all_triangles} triangles is too large for this page; open the STL file. `;
 
   const gl = canvas.getContext('webgl2', {antialias: true});
   if (!gl) {
-    root.querySelector('.controls').hidden = root.querySelector('.key').hidden = true;
-    say('This browser offers no WebGL 2, so the interactive view cannot be drawn; the pictures show the same bed.');
+    sorry('This browser offers no WebGL 2, so the interactive view cannot be drawn; the pictures show the same bed.');
     return;
   }
 
@@ -122,7 +126,14 @@
     }
     return {p, at};
   };
-  const sphere_program = program(sphere), metal_program = program(metal);
+  let sphere_program, metal_program;
+  try {
+    sphere_program = program(sphere);
+    metal_program = program(metal);
+  } catch (error) {
+    sorry(`This graphics driver cannot draw the interactive view (${error.message}); the pictures show the same bed.`);
+    return;
+  }
 
   const spheres = gl.createVertexArray();
   gl.bindVertexArray(spheres);

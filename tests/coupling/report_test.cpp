@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "core/write_file.hpp"
+#include "coupling/report/bed_viewer.hpp"
 #include "coupling/report/colour_map.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/ledger_checks.hpp"
@@ -185,6 +187,23 @@ TEST(Colour, maps_grow_lighter) {
   }
   EXPECT_EQ(hex_colour(colour(ColourMap::height, 0)), "#1d1147");  // the ends are the anchors, through Oklab and back
   EXPECT_EQ(hex_colour(colour(ColourMap::heat, 1)), "#fdf2b5");
+}
+
+TEST(BedViewer, shows_no_more_than_a_page_can_hold) {
+  PowderBed bed;
+  std::size_t const grains = viewer_grain_limit + 500;
+  for (std::size_t i = 0; i < grains; ++i)
+    bed.add(static_cast<std::int64_t>(i), Vec3(1e-8 * static_cast<double>(i), 0, 0), 1e-5, 0);
+  TriangleSurface part;
+  part.vertices = {Vec3(0, 0, 0), Vec3(2e-5, 0, 0), Vec3(0, 1e-5, 0)};  // its middle lies near the first grains
+  part.triangles.assign(viewer_triangle_limit + 1, {0, 1, 2});
+  auto const data = nlohmann::json::parse(viewer_data(bed, part, 0));
+  EXPECT_EQ(data["grains"], viewer_grain_limit);
+  EXPECT_EQ(data["all_grains"], grains);
+  EXPECT_EQ(data["triangles"], 0);
+  EXPECT_EQ(data["all_triangles"], part.triangles.size());
+  // The farthest grains are those that are left out.
+  EXPECT_NEAR(data["size"][0].get<double>(), 1e-2 * static_cast<double>(viewer_grain_limit - 1), 1e-6);
 }
 
 TEST(LedgerChecks, an_open_ledger_is_seen) {

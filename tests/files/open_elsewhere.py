@@ -1,7 +1,9 @@
 """Files of layerloop open in the programs that users own: h5py, and the reader that ParaView 5.11 uses for .h5 (VTK 9.1).
+And files that another program wrote, or tampered with, are refused in words.
 
 Usage: open_elsewhere.py SAMPLE_FILES_PROGRAM
 """
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -77,6 +79,60 @@ class OpenElsewhere(unittest.TestCase):
             field = file["VTKHDF/PointData/peak_temperature"]
             self.assertEqual((field.shape, field.attrs["unit"]), ((2, 3, 4), b"K"))
             np.testing.assert_array_equal(file["grid/cells"], [4, 3, 2])
+
+    def refusal(self, change):
+        """What our reader says of a copy of the bed file after change(file)."""
+        copy = Path(self.folder.name) / "changed.h5"
+        shutil.copy(self.bed, copy)
+        with h5py.File(copy, "r+") as file:
+            change(file)
+        told = subprocess.run([PROGRAM, "read", copy], capture_output=True, text=True)
+        self.assertEqual(told.returncode, 4, told)
+        return told.stdout
+
+    def replace(self, file, name, **how):
+        values = file[name][:]
+        del file[name]
+        file.create_dataset(name, data=values, **how)
+
+    def test_unchanged_copy_is_read(self):
+        self.assertEqual(subprocess.run([PROGRAM, "read", self.bed]).returncode, 0)
+
+    def test_other_versions_are_refused(self):
+        self.assertIn("format version 2", self.refusal(lambda file: file.attrs.modify("format_version", 2)))
+        self.assertIn("not a file of layerloop", self.refusal(lambda file: file.attrs.__delitem__("format_version")))
+
+    def test_foreign_storage_is_refused(self):
+        def outside(file):
+            del file["bed/radius"]
+            file["bed/radius"] = h5py.ExternalLink(str(self.bed), "/bed/radius")
+
+        def kept_in_another_file(file):
+            del file["bed/radius"]
+            file.create_dataset("bed/radius", (10,), "f8", external=[(str(self.heat), 0, 80)])
+
+        def virtual(file):
+            layout = h5py.VirtualLayout((10,), "f8")
+            layout[:] = h5py.VirtualSource(str(self.bed), "bed/radius", (10,))
+            del file["bed/radius"]
+            file.create_virtual_dataset("bed/radius", layout)
+
+        def never_written(file):
+            del file["bed/radius"]
+            file.create_dataset("bed/radius", (1 << 40,), "f8")
+
+        def one_short(file):
+            radii = file["bed/radius"][:9]
+            del file["bed/radius"]
+            file["bed/radius"] = radii
+
+        self.assertIn("damaged", self.refusal(one_short))
+        self.assertIn("another file", self.refusal(outside))
+        self.assertIn("another file", self.refusal(kept_in_another_file))
+        self.assertIn("not contiguous", self.refusal(virtual))
+        self.assertIn("size", self.refusal(never_written))
+        self.assertIn("not contiguous", self.refusal(lambda file: self.replace(file, "bed/radius", compression="gzip")))
+        self.assertIn("kind of number", self.refusal(lambda file: self.replace(file, "bed/radius", dtype="f4")))
 
 
 if __name__ == "__main__":

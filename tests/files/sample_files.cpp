@@ -1,14 +1,25 @@
-// Writes one bed and one grid file into the folder named on the command line, for tests that read them with other
-// programs.
+// For tests that hold our files against other programs. `sample_files FOLDER` writes one bed and one grid file;
+// `sample_files read FILE` reads a bed and ends with the code of what went wrong.
+#include <cstdio>
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "core/error.hpp"
 #include "core/vtkhdf.hpp"
 
-int main(int, char** arguments) {
-  using namespace layerloop;
-  std::filesystem::path const folder = arguments[1];
+namespace {
 
+using namespace layerloop;
+
+int read_bed(std::filesystem::path const& path) try {
+  return read_bed_group(Hdf5Reader(path)).size() == 10 ? 0 : 1;
+} catch (Error const& error) {
+  std::puts(error.what());
+  return static_cast<int>(error.code());
+}
+
+void write_samples(std::filesystem::path const& folder) {
   PowderBed bed;
   for (int i = 0; i < 10; ++i) bed.add(5 + i, Vec3(1e-5 * i, 2e-5 * i, 1.5e-5), 1e-6 * (i + 1), i % 2);
   bed.contacts.push_back({5, 6, {1e-9, 0, -1e-9}});
@@ -27,4 +38,11 @@ int main(int, char** arguments) {
   for (std::int64_t cell = 0; cell < grid.size(); ++cell) temperature.push_back(300.0 + static_cast<double>(cell));
   std::vector<Field> const cell_fields{{"peak_temperature", "K", temperature}};
   write_grid_file(folder / "heat_0001.h5", grid, cell_fields);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count == 3 && std::string(arguments[1]) == "read") return read_bed(arguments[2]);
+  write_samples(arguments[1]);
 }
