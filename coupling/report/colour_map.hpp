@@ -5,6 +5,7 @@
 
 namespace layerloop::coupling {
 
+/// height: the map of the bed pictures (raytrace/colour.hpp); heat: for light and temperature.
 enum class ColourMap { height, heat };
 
 /// Colour at t in [0, 1], clamped: lightness rises with t, so that the maps also read in grey.
