@@ -28,6 +28,20 @@ void add_chord(double low, double high, Range cells, std::vector<double>& column
   }
 }
 
+/// Fills a column of cells with the fraction of each that the sphere takes; centre and radius in cells.
+void sample_column(Vec3 const& centre, double radius, std::int64_t i, std::int64_t j, Range z,
+                   std::vector<double>& column) {
+  std::fill(column.begin(), column.end(), 0.0);
+  for (int chord = 0; chord < chords * chords; ++chord) {
+    double const dx = static_cast<double>(i) + (chord % chords + 0.5) / chords - centre.x();
+    double const dy = static_cast<double>(j) + (chord / chords + 0.5) / chords - centre.y();
+    double const half_squared = radius * radius - dx * dx - dy * dy;
+    if (half_squared <= 0) continue;
+    add_chord(centre.z() - std::sqrt(half_squared), centre.z() + std::sqrt(half_squared), z, column);
+  }
+  for (double& f : column) f = std::min(1.0, f / (chords * chords));
+}
+
 void merge_equal_cells(std::vector<GrainShare>& shares) {
   std::stable_sort(shares.begin(), shares.end(),
                    [](GrainShare const& a, GrainShare const& b) { return a.cell < b.cell; });
@@ -52,33 +66,31 @@ std::vector<GrainShare> grain_shares(PowderBed const& bed, std::size_t row, Voxe
 
   std::vector<GrainShare> shares;
   std::vector<double> column(static_cast<std::size_t>(z.to - z.from));
-  double sampled = 0;  // volume by chords, inside the grid or not
+  double sampled = 0, cut = 0;  // volume by chords and sum of f (1 - f), in the grid or not
   for (std::int64_t j = y.from; j < y.to; ++j) {
     for (std::int64_t i = x.from; i < x.to; ++i) {
-      std::fill(column.begin(), column.end(), 0.0);
-      for (int chord = 0; chord < chords * chords; ++chord) {
-        double const dx = static_cast<double>(i) + (chord % chords + 0.5) / chords - c.x();
-        double const dy = static_cast<double>(j) + (chord / chords + 0.5) / chords - c.y();
-        double const half_squared = r * r - dx * dx - dy * dy;
-        if (half_squared <= 0) continue;
-        add_chord(c.z() - std::sqrt(half_squared), c.z() + std::sqrt(half_squared), z, column);
-      }
+      sample_column(c, r, i, j, z, column);
       std::int64_t const wrapped = period > 0 ? ((j % period) + period) % period : j;
       for (std::int64_t k = z.from; k < z.to; ++k) {
-        double const volume = column[static_cast<std::size_t>(k - z.from)];
-        sampled += volume;
-        if (volume > 0 && grid.contains({i, wrapped, k})) shares.push_back({grid.index(i, wrapped, k), volume});
+        double const f = column[static_cast<std::size_t>(k - z.from)];
+        sampled += f;
+        cut += f * (1 - f);
+        if (f > 0 && grid.contains({i, wrapped, k})) shares.push_back({grid.index(i, wrapped, k), f});
       }
     }
   }
+  double const volume = bed.volume(row), missing = volume / grid.cell_volume() - sampled;
   if (sampled == 0) {  // the grain slips between the chords: it lies in one cell
     auto cell = grid.locate(bed.position(row));
     if (period > 0) cell[1] = ((cell[1] % period) + period) % period;
-    if (grid.contains(cell)) shares.push_back({grid.index(cell[0], cell[1], cell[2]), bed.volume(row)});
+    if (grid.contains(cell)) shares.push_back({grid.index(cell[0], cell[1], cell[2]), volume});
     return shares;
   }
-  double const scale = bed.volume(row) / sampled;
-  for (GrainShare& share : shares) share.volume *= scale;
+  bool const fine_grid = std::abs(missing) <= cut;  // else the grain is about as small as a cell
+  for (GrainShare& share : shares) {
+    double const f = share.volume;
+    share.volume = fine_grid ? grid.cell_volume() * (f + missing / cut * f * (1 - f)) : volume * f / sampled;
+  }
   merge_equal_cells(shares);
   return shares;
 }

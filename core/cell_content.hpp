@@ -23,8 +23,9 @@ struct GrainShare {
 };
 
 /// Volume of one grain in each cell of the grid it touches, ascending by cell; y wraps with `period_y` when it is > 0.
-/// Each column of cells is sampled with 8 x 8 vertical chords of the sphere (exact along z), then scaled so that the
-/// shares of a grain that lies wholly inside the grid sum to its volume to round-off. Volume outside the grid is left out.
+/// Each column of cells is sampled with 8 x 8 vertical chords of the sphere (exact along z); what these miss of the volume
+/// is shared out to the cut cells in proportion to f (1 - f), f being the filled fraction. So no share exceeds its cell, and
+/// the shares of a grain that lies wholly inside the grid sum to its volume to round-off. Volume outside the grid is left out.
 /// \pre period_y is a whole number of cells
 std::vector<GrainShare> grain_shares(PowderBed const& bed, std::size_t row, VoxelGrid const& grid, double period_y);
 

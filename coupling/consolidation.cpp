@@ -54,11 +54,28 @@ std::vector<char> half_or_more_melted(PowderBed const& bed, std::vector<GrainCel
   return taken;
 }
 
+/// Columns whose topmost plate cell melted.
+std::vector<char> molten_plate(SolidField const& solid, MeltRecord const& melt) {
+  auto const offset = offset_on_lattice(melt.grid, solid.grid);
+  std::vector<char> molten(static_cast<std::size_t>(solid.columns()), 0);
+  std::int64_t const top = -1 - offset[2];  // layer of the heat grid
+  for (std::int64_t j = 0; top >= 0 && j < melt.grid.n[1]; ++j) {
+    for (std::int64_t i = 0; i < melt.grid.n[0]; ++i) {
+      molten[static_cast<std::size_t>(i + offset[0] + solid.grid.n[0] * (j + offset[1]))] =
+          melt.melted[static_cast<std::size_t>(melt.grid.index(i, j, top))];
+    }
+  }
+  return molten;
+}
+
 /// Splits metal and grains into what is liquid and what stays, and takes the remelted metal out of the field.
 MeltColumns melt_down(SolidField& solid, std::vector<GrainCells> const& grains, std::vector<char> const& taken,
                       std::vector<char> const& melted, double density) {
-  MeltColumns columns{solid.grid, fill_fraction(solid, density), std::vector<double>(solid.mass.size(), 0.0),
-                      std::vector<double>(solid.mass.size(), 0.0)};
+  MeltColumns columns{solid.grid,
+                      fill_fraction(solid, density),
+                      std::vector<double>(solid.mass.size(), 0.0),
+                      std::vector<double>(solid.mass.size(), 0.0),
+                      {}};
   for (std::size_t c = 0; c < melted.size(); ++c) {
     if (!melted[c]) continue;
     columns.liquid[c] = std::exchange(columns.solid[c], 0.0);
@@ -191,8 +208,9 @@ Consolidation consolidate(SolidField& solid, PowderBed& bed, TriangleSurface& su
   CompensatedSum in_melted_cells;
   for (GrainCells const& grain : grains) in_melted_cells.add(grain.in_melted_cells);
   figures.melted_cell_mass = density * in_melted_cells.value();
-  SettledMelt const settled =
-      settle_melt(melt_down(solid, grains, taken, melted, density), std::max(0.5 * melt.pool.width, solid.grid.cell));
+  MeltColumns columns = melt_down(solid, grains, taken, melted, density);
+  columns.molten_plate = molten_plate(solid, melt);
+  SettledMelt const settled = settle_melt(columns, std::max(0.5 * melt.pool.width, solid.grid.cell));
   figures.surface_height_correction = settled.mean_height_change;
   add_metal(solid, settled.metal, density);
   take_from_bed(bed, taken, Fate::melted, checked, figures);

@@ -15,7 +15,8 @@ constexpr int most_sweeps = 2000;
 /// Melt on top of a column, between the last blocking cell and the open sky.
 struct OpenMelt {
   std::int64_t base = 0;  ///< layer of its lowest cell
-  double volume = 0;      ///< [cells]; 0: the column takes no part in levelling
+  double volume = 0;      ///< [cells]
+  bool wet = false;       ///< takes part in levelling
 };
 
 struct Surface {
@@ -40,12 +41,7 @@ class Columns {
   bool blocks(std::int64_t column, std::int64_t k) const {
     return melt_.solid[index(column, k)] + melt_.grains[index(column, k)] >= blocking;
   }
-  bool has_melt(std::int64_t column) const {
-    for (std::int64_t k = 0; k < layers_; ++k) {
-      if (liquid(column, k) > 0) return true;
-    }
-    return false;
-  }
+  bool stands_on_melt(std::int64_t column) const { return melt_.molten_plate[static_cast<std::size_t>(column)] != 0; }
   /// The neighbour to the right (axis 0; -1 beyond the wall) or behind (axis 1, periodic).
   std::int64_t next(std::int64_t column, int axis) const {
     std::int64_t const i = column % nx_, j = column / nx_;
@@ -81,6 +77,7 @@ OpenMelt sink(Columns const& columns, std::int64_t column, std::vector<CellVolum
     }
     open.volume += columns.liquid(column, k);
   }
+  open.wet = open.volume > 0 || (open.base == 0 && columns.stands_on_melt(column));
   return open;
 }
 
@@ -100,20 +97,20 @@ Surface surface_of(Columns const& columns, std::int64_t column, OpenMelt const& 
 std::vector<Surface> surfaces(Columns const& columns, std::vector<OpenMelt> const& open) {
   std::vector<Surface> all(open.size());
   for (std::size_t c = 0; c < open.size(); ++c) {
-    if (open[c].volume > 0) all[c] = surface_of(columns, static_cast<std::int64_t>(c), open[c]);
+    if (open[c].wet) all[c] = surface_of(columns, static_cast<std::int64_t>(c), open[c]);
   }
   return all;
 }
 
 /// One conservative sweep: every flux from the same old heights.
-void level_once(Columns const& columns, std::vector<char> const& wet, std::vector<OpenMelt>& open) {
+void level_once(Columns const& columns, std::vector<OpenMelt>& open) {
   std::vector<Surface> const surface = surfaces(columns, open);
   std::vector<double> change(open.size(), 0.0);
   for (std::size_t a = 0; a < open.size(); ++a) {
-    if (!wet[a]) continue;
+    if (!open[a].wet) continue;
     for (int axis : {0, 1}) {
       std::int64_t const next = columns.next(static_cast<std::int64_t>(a), axis);
-      if (next < 0 || !wet[static_cast<std::size_t>(next)]) continue;
+      if (next < 0 || !open[static_cast<std::size_t>(next)].wet) continue;
       auto const b = static_cast<std::size_t>(next);
       double const free_share = std::min(surface[a].free_share, surface[b].free_share);
       double const flux = conductance * free_share * (surface[a].height - surface[b].height);
@@ -127,18 +124,14 @@ void level_once(Columns const& columns, std::vector<char> const& wet, std::vecto
 
 /// Mean change of height [cells].
 double level(Columns const& columns, std::vector<OpenMelt>& open, double length) {
-  std::vector<char> wet(open.size());
-  std::transform(open.begin(), open.end(), wet.begin(),
-                 [](OpenMelt const& o) { return static_cast<char>(o.volume > 0); });
   std::vector<Surface> const before = surfaces(columns, open);
   double const sweeps = std::ceil(length * length / (2 * conductance));
-  for (int sweep = 0; sweep < std::min(sweeps, static_cast<double>(most_sweeps)); ++sweep)
-    level_once(columns, wet, open);
+  for (int sweep = 0; sweep < std::min(sweeps, static_cast<double>(most_sweeps)); ++sweep) level_once(columns, open);
 
   CompensatedSum change;
   std::int64_t levelled = 0;
   for (std::size_t c = 0; c < open.size(); ++c) {
-    if (!wet[c]) continue;
+    if (!open[c].wet) continue;
     ++levelled;
     change.add(std::abs(surface_of(columns, static_cast<std::int64_t>(c), open[c]).height - before[c].height));
   }
@@ -152,7 +145,7 @@ SettledMelt settle_melt(MeltColumns const& melt, double length) {
   SettledMelt settled;
   std::vector<OpenMelt> open(static_cast<std::size_t>(columns.count()));
   for (std::int64_t column = 0; column < columns.count(); ++column) {
-    if (columns.has_melt(column)) open[static_cast<std::size_t>(column)] = sink(columns, column, settled.metal);
+    open[static_cast<std::size_t>(column)] = sink(columns, column, settled.metal);
   }
   settled.mean_height_change = melt.grid.cell * level(columns, open, length / melt.grid.cell);
   for (std::int64_t column = 0; column < columns.count(); ++column) {

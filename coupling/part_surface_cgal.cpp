@@ -50,7 +50,9 @@ constexpr double growth = 0.4;        ///< of the circumradius per cell of dista
 constexpr double crease_spacing = 4;  ///< of the vertices along the slab's edges
 constexpr std::int64_t rim = 4;       ///< cells of bare plate around the meshed part
 constexpr std::int64_t pit_wall = 2;  ///< cells that the slab reaches into the pit's walls
-constexpr double snap = 1e-4;         ///< what lies so close to a plane of the slab is put onto it
+constexpr std::size_t vertices_per_column =
+    8;                         ///< refinement stops there (an uneven surface takes 2); wrap() mends the rest
+constexpr double snap = 1e-4;  ///< what lies so close to a plane of the slab is put onto it
 
 /// Slab under zone, periodic continuation and rim; z = 0 is the plate's top.
 struct Slab {
@@ -191,7 +193,9 @@ Mesh refine(SurfaceLevel const& level, Slab const& slab) {
     complex.set_dimension(vertex, 2);
     complex.set_index(vertex, domain.index_from_surface_patch_index({0, 1}));
   }
-  CGAL::refine_mesh_3(complex, domain, fine, p::no_perturb(), p::no_exude(), p::manifold());
+  std::size_t const limit = vertices_per_column * static_cast<std::size_t>(level.n[0] * level.n[1]) + 10000;
+  CGAL::refine_mesh_3(complex, domain, fine, p::no_perturb(), p::no_exude(), p::manifold(),
+                      p::mesh_3_options(p::maximal_number_of_vertices = limit));
   Mesh mesh;
   CGAL::facets_in_complex_3_to_triangle_mesh(complex, mesh);
   return mesh;

@@ -78,6 +78,30 @@ double two_cell_average(double below, double own, double above) {
   return own >= metal ? std::max(average, 0.25 + 0.5 * own) : average;
 }
 
+/// Metal cells that meet at an edge only leave a bilinear saddle near the level 0.5, where no manifold surface exists:
+/// they get a neck, the gas cells beside the edge being raised (in the level only, the field keeps its mass).
+void join_at_edges(SurfaceLevel& surface) {
+  constexpr double neck = 0.4, near_critical = 0.1;
+  std::vector<double> const before = surface.level;
+  std::array<std::int64_t, 3> const stride{1, surface.n[0], surface.n[0] * surface.n[1]};
+  for (auto [a, b] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}}) {
+    for (std::int64_t node = 0; node < static_cast<std::int64_t>(before.size()); ++node) {
+      std::array<std::int64_t, 3> const at{node % stride[1], node / stride[1] % surface.n[1], node / stride[2]};
+      if (at[a] + 1 >= surface.n[a] || at[b] + 1 >= surface.n[b]) continue;
+      std::array<std::int64_t, 4> const ring{node, node + stride[a], node + stride[a] + stride[b], node + stride[b]};
+      auto const value = [&](std::size_t c) { return before[static_cast<std::size_t>(ring[c])]; };
+      bool const first = value(0) >= metal;
+      if ((value(2) >= metal) != first || (value(1) >= metal) == first || (value(3) >= metal) == first) continue;
+      double const saddle = (value(0) * value(2) - value(1) * value(3)) / (value(0) + value(2) - value(1) - value(3));
+      if (std::abs(saddle - metal) > near_critical) continue;
+      for (std::size_t gas = first ? 1 : 0; gas < 4; gas += 2) {
+        double& level = surface.level[static_cast<std::size_t>(ring[gas])];
+        level = std::max(level, neck);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 double SurfaceLevel::operator()(Vec3 const& p) const {
@@ -133,6 +157,7 @@ SurfaceLevel surface_level(SolidField const& solid, double density, Voids voids,
     }
   }
   surface.metal_cells = cells.value();
+  join_at_edges(surface);
   return surface;
 }
 
