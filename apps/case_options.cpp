@@ -1,0 +1,40 @@
+#include <mpi.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "apps/verbs.hpp"
+#include "core/case_file.hpp"
+
+namespace layerloop::apps {
+namespace {
+
+/// Cores of this machine for each of the ranks that run on it.
+int cores_per_rank() {
+  MPI_Comm node;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  int ranks = 1;
+  MPI_Comm_size(node, &ranks);
+  MPI_Comm_free(&node);
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
+}
+
+}  // namespace
+
+void add_case_options(CLI::App& verb, CaseOptions& options) {
+  verb.add_option("case", options.case_file, "the case file (TOML)")->required()->type_name("FILE.toml");
+  verb.add_option("--set", options.overrides, "override a key of the case: table.key=value")->type_name("KEY=VALUE");
+  verb.add_option("--seed", options.seed, "override case.seed");
+  verb.add_option("--threads", options.threads, "threads of each rank (default: the cores of the machine shared by its ranks)")
+      ->check(CLI::Range(1, 1024));
+}
+
+Case read_case(CaseOptions const& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
+  omp_set_num_threads(options.threads > 0 ? options.threads : cores_per_rank());
+  return layerloop::read_case(options.case_file, overrides);
+}
+
+}  // namespace layerloop::apps

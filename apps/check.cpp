@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/verbs.hpp"
+#include "core/case_file.hpp"
+#include "core/communicator.hpp"
+#include "coupling/cost.hpp"
+
+namespace layerloop::apps {
+namespace {
+
+void check(CaseOptions const& from) {
+  Case const checked = read_case(from);
+  if (!Communicator{}.is_root()) return;
+  coupling::Cost const cost = coupling::estimate_cost(checked);
+  fmt::print(
+      "{} is a good case\n"
+      "  particles   {}\n"
+      "  time_steps  {} (sweeps; settling adds about half as many)\n"
+      "  rays        {}\n"
+      "  cells       {}\n"
+      "  memory      {:.0f} MB\n",
+      from.case_file.string(), cost.particles, cost.time_steps, cost.rays, cost.cells, cost.memory * 1e-6);
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& chosen) {
+  CLI::App* verb = program.add_subcommand("check", "is the case good, and what will it cost?");
+  auto const from = std::make_shared<CaseOptions>();
+  auto const help_case = std::make_shared<bool>(false);
+  add_case_options(*verb, *from);
+  verb->get_option("case")->required(false);
+  verb->add_flag("--help-case", *help_case, "print every case key: unit, range, default and what it means");
+  verb->callback([=, &chosen] {
+    if (*help_case) {
+      chosen = [] {
+        if (Communicator{}.is_root()) fmt::print("{}", case_key_page());
+      };
+      return;
+    }
+    if (from->case_file.empty()) throw CLI::RequiredError("case");
+    chosen = [=] { check(*from); };
+  });
+}
+
+}  // namespace layerloop::apps

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/verbs.hpp"
+#include "core/communicator.hpp"
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "thermal/petsc_session.hpp"
+
+namespace layerloop {
+namespace {
+
+void tell(std::string const& message) { fmt::print(stderr, "{}\n", message); }
+
+/// What every rank finds out alike is told once and ends in order; what one rank meets alone must stop the others too.
+int end_with(Communicator const& comm, ExitCode code, std::string const& message) {
+  bool const everywhere = code == ExitCode::bad_input || code == ExitCode::stopped_by_signal;
+  if (comm.is_root() || !everywhere) tell(message);
+  if (comm.size() > 1 && !everywhere) MPI_Abort(comm.handle(), static_cast<int>(code));
+  return static_cast<int>(code);
+}
+
+int perform(apps::Action const& action) {
+  Communicator const comm;
+  try {
+    action();
+    return static_cast<int>(ExitCode::done);
+  } catch (Error const& error) {
+    return end_with(comm, error.code(), error.what());
+  } catch (std::exception const& error) {
+    return end_with(comm, ExitCode::bug, fmt::format("internal error: {} Please report it with the case file.", error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace layerloop
+
+/// The program `layerloop`: one verb a file.
+int main(int argc, char** argv) {
+  using namespace layerloop;
+  CLI::App program("Laser powder bed fusion, layer by layer: spread, trace, melt, mesh, and the next layer on it.", "layerloop");
+  program.require_subcommand(1);
+  program.set_version_flag("--version", LAYERLOOP_VERSION);
+  apps::Action action;
+  apps::add_run(program, action);
+  apps::add_check(program, action);
+  apps::add_doctor(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (CLI::ParseError const& error) {
+    return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+  }
+  catch_stop_signals();
+  thermal::PetscSession const session;
+  return perform(action);
+}

@@ -1,0 +1,31 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/case.hpp"
+
+namespace layerloop::apps {
+
+/// What every verb that reads a case takes.
+struct CaseOptions {
+  std::filesystem::path case_file;
+  std::vector<std::string> overrides;  ///< --set table.key=value
+  std::optional<std::uint64_t> seed;
+  int threads = 0;                     ///< 0: the cores of this machine shared by the ranks on it
+};
+
+/// A verb registers its subcommand and, when the user chose it, leaves what is to be done in `chosen`.
+using Action = std::function<void()>;
+void add_run(CLI::App& program, Action& chosen);
+void add_check(CLI::App& program, Action& chosen);
+void add_doctor(CLI::App& program, Action& chosen);
+
+void add_case_options(CLI::App& verb, CaseOptions& options);
+Case read_case(CaseOptions const& options);  ///< also sets the number of threads
+
+}  // namespace layerloop::apps

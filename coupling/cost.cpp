@@ -1,0 +1,49 @@
+#include "coupling/cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dem/machine_rig.hpp"
+
+namespace layerloop::coupling {
+namespace {
+
+double mean_grain_volume(PowderSettings const& powder) {
+  double volume = 0, count = 0;
+  for (std::size_t c = 0; c < powder.diameters.size(); ++c) {
+    double const grain = std::numbers::pi / 6 * std::pow(powder.diameters[c], 3);
+    volume += powder.basis == SizeBasis::number ? powder.fractions[c] * grain : powder.fractions[c];
+    count += powder.basis == SizeBasis::number ? powder.fractions[c] : powder.fractions[c] / grain;
+  }
+  return volume / count;
+}
+
+}  // namespace
+
+std::int64_t dose_count(Case const& checked) {
+  MachineSettings const& machine = checked.machine;
+  double const layer_volume = machine.layer_thickness * machine.deposition_length * machine.width;
+  return std::llround(machine.dose_factor * 0.6 * layer_volume / mean_grain_volume(checked.powder));
+}
+
+Cost estimate_cost(Case const& checked) {
+  MachineSettings const& machine = checked.machine;
+  ScanSettings const& scan = checked.scan;
+  Cost cost;
+  cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose_count(checked);
+  double const sweep = dem::blade_stroke(machine) / machine.recoating_speed;
+  cost.time_steps = checked.run.layers * std::llround(sweep / dem::motion_of(checked).time_step);
+  if (machine.frozen_zone) return cost;
+
+  auto const tracks = scan.kind == ScanKind::track ? 1 : scan.tracks;
+  cost.rays = checked.run.layers * tracks * std::llround(scan.track_length / checked.optics.position_spacing) * checked.optics.rays;
+  double const length = std::min(scan.track_length + 2 * checked.heat.margin, machine.deposition_length);
+  double const height = checked.heat.substrate_depth + static_cast<double>(checked.run.layers) * machine.layer_thickness;
+  cost.cells = std::llround(length * machine.width * height / std::pow(checked.heat.cell_size, 3));
+  // A grain with its neighbours and springs takes about 1 kB, a cell of the heat grid about 150 B.
+  cost.memory = 1e3 * static_cast<double>(cost.particles) + 150.0 * static_cast<double>(cost.cells);
+  return cost;
+}
+
+}  // namespace layerloop::coupling

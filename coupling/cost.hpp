@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+
+#include "core/case.hpp"
+
+namespace layerloop::coupling {
+
+/// What a layer loop will have to compute, counted from the case alone.
+struct Cost {
+  std::int64_t particles = 0;   ///< fed over the whole run
+  std::int64_t time_steps = 0;  ///< of DEM: sweeps only, settling adds roughly half as many
+  std::int64_t rays = 0;
+  std::int64_t cells = 0;       ///< of the heat grid, at the last layer
+  double memory = 0;            ///< [bytes] that particles, grid and traces take, about
+};
+
+Cost estimate_cost(Case const& checked);
+
+/// Grains fed before layer 2, 3, ...: dose_factor nominal layers packed to 60 %, in grains of the mean volume.
+std::int64_t dose_count(Case const& checked);
+
+}  // namespace layerloop::coupling

@@ -1,0 +1,156 @@
+#include "coupling/exposure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "coupling/scan_path.hpp"
+#include "raytrace/trace.hpp"
+
+namespace layerloop::coupling {
+namespace {
+
+/// A stretch of track, heated as from its middle.
+struct BeamStop {
+  Vec3 centre;
+  double begin_time, end_time;
+  double power;
+};
+
+std::vector<BeamStop> beam_stops(std::vector<Track> const& tracks, double spacing) {
+  std::vector<BeamStop> stops;
+  for (Track const& track : tracks) {
+    Vec3 const along = track.end - track.begin;
+    auto const count = std::max<std::int64_t>(1, std::llround(along.norm() / spacing));
+    double const duration = track.end_time - track.begin_time;
+    for (std::int64_t s = 0; s < count; ++s) {
+      auto const share = [&](double part) { return (static_cast<double>(s) + part) / static_cast<double>(count); };
+      stops.push_back({track.begin + share(0.5) * along, track.begin_time + share(0.0) * duration,
+                       track.begin_time + share(1.0) * duration, track.power});
+    }
+  }
+  return stops;
+}
+
+/// The given absorptivity instead of a trace: the Gaussian beam on the topmost metal of every column (periodic in y).
+AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, double spot_radius, CellContent const& cells) {
+  VoxelGrid const& grid = cells.grid;
+  double const width = grid.cell * grid.n[1];
+  auto const share = [&](double from, double to) {  // of a Gaussian of standard deviation w/2 between two offsets
+    return 0.5 * (std::erf(std::sqrt(2.0) * to / spot_radius) - std::erf(std::sqrt(2.0) * from / spot_radius));
+  };
+  AbsorbedPower power;
+  power.incident = stop.power;
+  power.absorptivity = absorptivity;
+  power.absorbed = absorptivity * stop.power;
+  power.escaped = stop.power - power.absorbed;
+  double on_grid = 0;
+  for (std::int32_t j = 0; j < grid.n[1]; ++j) {
+    double y = grid.origin.y() + j * grid.cell - stop.centre.y();
+    double const share_y = share(y, y + grid.cell) + share(y - width, y - width + grid.cell) + share(y + width, y + width + grid.cell);
+    for (std::int32_t i = 0; i < grid.n[0]; ++i) {
+      double const x = grid.origin.x() + i * grid.cell - stop.centre.x();
+      double const watts = power.absorbed * share_y * share(x, x + grid.cell);
+      if (watts < 1e-12 * stop.power) continue;
+      std::int32_t k = grid.n[2] - 1;
+      auto const metal = [&](std::int32_t level) {
+        auto const c = static_cast<std::size_t>(grid.index(i, j, level));
+        return cells.solid[c] + cells.powder[c];
+      };
+      while (k > 0 && metal(k) < 0.5) --k;
+      power.cell.push_back(grid.index(i, j, k));
+      power.watts.push_back(watts);
+      on_grid += watts;
+    }
+  }
+  std::vector<std::size_t> order(power.cell.size());
+  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return power.cell[a] < power.cell[b]; });
+  AbsorbedPower sorted = power;
+  for (std::size_t c = 0; c < order.size(); ++c) {
+    sorted.cell[c] = power.cell[order[c]];
+    sorted.watts[c] = power.watts[order[c]];
+  }
+  sorted.outside_grid = power.absorbed - on_grid;
+  return sorted;
+}
+
+/// What every rank needs of another rank's trace.
+void share_out(AbsorbedPower& power, int owner, Communicator const& comm) {
+  std::vector<double> scalars{power.incident,     power.absorbed,       power.escaped,
+                              power.residual,     power.outside_grid,   power.absorptivity,
+                              power.standard_error, power.mean_bounces, static_cast<double>(power.rays)};
+  comm.broadcast(power.cell, owner);
+  comm.broadcast(power.watts, owner);
+  comm.broadcast(scalars, owner);
+  power.incident = scalars[0];
+  power.absorbed = scalars[1];
+  power.escaped = scalars[2];
+  power.residual = scalars[3];
+  power.outside_grid = scalars[4];
+  power.absorptivity = scalars[5];
+  power.standard_error = scalars[6];
+  power.mean_bounces = scalars[7];
+  power.rays = static_cast<std::int64_t>(scalars[8]);
+}
+
+}  // namespace
+
+Exposure expose_tracks(Case const& checked, std::int32_t layer, raytrace::BedScene const& scene, CellContent const& cells,
+                       Communicator const& comm, bool show_progress) {
+  Exposure exposure;
+  exposure.source.tracks = scan_path(checked, layer);
+  std::vector<BeamStop> const stops = beam_stops(exposure.source.tracks, checked.optics.position_spacing);
+  std::vector<std::complex<double>> const refractive_index{checked.material.refractive_index};
+
+  std::vector<AbsorbedPower> traced(stops.size());
+  Progress progress("trace", static_cast<double>(stops.size()), show_progress);
+  for (std::size_t s = 0; s < stops.size(); ++s) {
+    if (static_cast<int>(s) % comm.size() != comm.rank()) continue;
+    if (checked.laser.absorptivity) {
+      traced[s] = prescribed_absorption(stops[s], *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
+    } else {
+      raytrace::Beam const beam{stops[s].centre, stops[s].power, checked.laser.spot_radius()};
+      // Every position draws its own rays: the errors of the positions are independent.
+      std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | s;
+      raytrace::TraceSettings const settings{.rays = checked.optics.rays, .seed = checked.seed, .id = id};
+      traced[s] = raytrace::trace(scene, beam, refractive_index, 0, cells.grid, settings);
+    }
+    progress.update(static_cast<double>(s + 1));
+  }
+
+  double on_time = 0;
+  for (BeamStop const& stop : stops) on_time += stop.end_time - stop.begin_time;
+  HeatSource& source = exposure.source;
+  source.time.push_back(stops.front().begin_time);
+  for (std::size_t s = 0; s < stops.size(); ++s) {
+    share_out(traced[s], static_cast<int>(s) % comm.size(), comm);
+    if (stops[s].begin_time > source.time.back()) {  // the beam was off since the last track
+      source.power.emplace_back();
+      source.time.push_back(stops[s].begin_time);
+    }
+    accumulate(exposure.mean, traced[s], (stops[s].end_time - stops[s].begin_time) / on_time);
+    exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(traced[s]));
+    source.power.push_back(std::move(traced[s]));
+    source.time.push_back(stops[s].end_time);
+  }
+  return exposure;
+}
+
+AreaMap absorbed_energy(HeatSource const& source, VoxelGrid const& grid) {
+  AreaMap map{grid.origin.x(), grid.origin.y(), grid.cell, grid.n[0], grid.n[1], {}};
+  std::size_t const columns = static_cast<std::size_t>(grid.n[0]) * static_cast<std::size_t>(grid.n[1]);
+  map.values.assign(columns, 0.0);
+  for (std::size_t s = 0; s < source.power.size(); ++s) {
+    double const duration = source.time[s + 1] - source.time[s];
+    for (std::size_t c = 0; c < source.power[s].cell.size(); ++c) {
+      map.values[static_cast<std::size_t>(source.power[s].cell[c]) % columns] +=
+          source.power[s].watts[c] * duration / (grid.cell * grid.cell);
+    }
+  }
+  return map;
+}
+
+}  // namespace layerloop::coupling

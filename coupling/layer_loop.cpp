@@ -1,0 +1,174 @@
+#include "coupling/layer_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/case_file.hpp"
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "coupling/ledger.hpp"
+#include "coupling/build_state.hpp"
+#include "coupling/checkpoint.hpp"
+#include "coupling/consolidation.hpp"
+#include "coupling/cost.hpp"
+#include "coupling/exposure.hpp"
+#include "coupling/freeze_zone.hpp"
+#include "coupling/layer_output.hpp"
+#include "coupling/melt_section.hpp"
+#include "coupling/part_surface_cgal.hpp"
+#include "coupling/scan_path.hpp"
+#include "coupling/stopwatch.hpp"
+#include "coupling/surface_level.hpp"
+#include "coupling/transfer.hpp"
+#include "dem/dosing.hpp"
+#include "dem/layer_metrics.hpp"
+#include "dem/recoater.hpp"
+#include "thermal/expose.hpp"
+
+namespace layerloop::coupling {
+namespace {
+
+/// What stays the same through a run.
+struct Run {
+  Case const& checked;
+  RunOptions const& options;
+  Communicator const& comm;
+  LayerOutput output;
+  bool show_progress() const { return comm.is_root() && !options.quiet; }
+};
+
+/// The plate goes down by one layer and takes part, mesh and the powder on it along.
+void lower(Run const& run, BuildState& build) {
+  double const drop = run.checked.machine.layer_thickness;
+  lower(build.solid, drop);
+  build.substrate.shift(Vec3(0, 0, -drop));
+  dem::lower_plate(build.bed, run.checked);
+}
+
+/// New grains rain into the accumulation zone and settle.
+void dose(Run const& run, BuildState& build) {
+  Stopwatch const timed(build.record.wall_time.dem);
+  Ledger& ledger = build.record.ledger;
+  std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
+  double const volume_before = total_volume(build.bed);
+  build.next_id = dem::dose(build.bed, run.checked, build.substrate, count, build.next_id, run.comm, run.show_progress());
+  ledger.particles_fed += count;
+  ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
+}
+
+/// The blade sweeps; what it leaves is measured.
+void spread(Run const& run, BuildState& build, LayerRecord& layer) {
+  Stopwatch const timed(build.record.wall_time.dem);
+  HeightMap const base = top_of_solid(build.solid, run.checked);
+  dem::LayerBase const before = dem::layer_base(build.bed, base, run.checked);
+  dem::SpreadOutcome const sweep = dem::spread(build.bed, run.checked, build.substrate, run.comm, run.show_progress());
+  layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
+  layer.blade_note = sweep.blade_note;
+
+  Ledger& ledger = build.record.ledger;
+  ledger.particles_overflow += sweep.overflow_grains;
+  ledger.mass_overflow += run.checked.material.density * sweep.overflow_volume;
+}
+
+/// Pictures are drawn by the root rank from the scene that is traced.
+void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene, std::initializer_list<View> views, LayerRecord& layer) {
+  Stopwatch const timed(build.record.wall_time.io);
+  for (View const view : views) run.output.picture(scene, build.bed, view, layer);
+}
+
+/// The laser: what this very bed absorbs, and what melts.
+MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellContent const& cells) {
+  Case const& checked = run.checked;
+  WallTime& wall_time = build.record.wall_time;
+  raytrace::BedScene const scene(build.bed, build.substrate, {0.0, checked.machine.width});
+  Exposure exposure;
+  {
+    Stopwatch const timed(wall_time.rays);
+    exposure = expose_tracks(checked, layer.layer, scene, cells, run.comm, run.show_progress());
+  }
+  picture(run, build, scene, {View::whole_machine, View::oblique, View::from_above}, layer);
+  Stopwatch const timed(wall_time.heat);
+  auto const reported = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
+  thermal::HeatOutcome const heat = thermal::expose(cells, exposure.source, checked, run.comm, reported);
+
+  book_light(build.record.ledger, exposure, layer.layer);
+  book_heat(build.record.ledger, heat);
+  layer.absorptivity = exposure.mean.absorptivity;
+  layer.absorptivity_standard_error = exposure.mean.standard_error;
+  layer.mean_bounces = exposure.mean.mean_bounces;
+  layer.rays = exposure.mean.rays;
+  layer.absorbed_energy = absorbed_energy(exposure.source, cells.grid);
+  layer.peak_temperature = heat.peak_temperature;
+  layer.pool = heat.melt.pool;
+  layer.pool_u_num = heat.melt.pool_u_num;
+  layer.sections = melt_sections(heat.melt, cells, exposure.source.tracks);
+  run.output.grid(cells, heat.melt, layer);
+  return heat.melt;
+}
+
+/// Melted grains become part of the solid, and the solid's new surface is meshed.
+void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
+  Case const& checked = run.checked;
+  if (checked.machine.frozen_zone) {
+    Stopwatch const timed(build.record.wall_time.mesh);
+    layer.consolidation = freeze_zone(build.solid, build.bed, build.substrate, checked);
+  } else {
+    auto const [from, to] = heated_range(checked);
+    CellContent const cells = cell_content(build.solid, build.bed, checked, from, to);
+    MeltRecord const melt = expose(run, build, layer, cells);
+    Stopwatch const timed(build.record.wall_time.mesh);
+    layer.consolidation = consolidate(build.solid, build.bed, build.substrate, melt, cells, checked);
+  }
+  layer.part_surface = top_of_solid(build.solid, checked);
+  raytrace::BedScene const scene(build.bed, build.substrate, {0.0, checked.machine.width});
+  picture(run, build, scene, {View::part}, layer);
+
+  Ledger& ledger = build.record.ledger;
+  ledger.particles_melted += layer.consolidation.grains_melted;
+  ledger.particles_trapped += layer.consolidation.grains_trapped;
+  ledger.mass_melted += layer.consolidation.melted_mass;
+}
+
+/// One layer, as the machine makes it.
+void build_layer(Run const& run, BuildState& build) {
+  LayerRecord layer;
+  layer.layer = ++build.layers_done;
+  if (layer.layer > 1) lower(run, build);  // the plate begins one layer below the blade
+  dose(run, build);
+  spread(run, build, layer);
+  consolidate(run, build, layer);
+  build.record.layers.push_back(layer);
+  audit(build, run.checked);
+}
+
+BuildState first_state(Run const& run) {
+  std::string skipped;
+  if (run.options.resume) {
+    std::optional<BuildState> found = load_newest_checkpoint(run.options.folder, resolved_toml(run.checked), skipped);
+    if (found) return *found;
+  }
+  BuildState build;
+  build.solid = empty_solid(run.checked);
+  build.substrate = mesh_solid(build.solid, run.checked);
+  return build;
+}
+
+}  // namespace
+
+RunRecord run_layer_loop(Case const& checked, RunOptions const& options, Communicator const& comm) {
+  Run const run{checked, options, comm, LayerOutput(checked, options.folder, comm)};
+  BuildState build = first_state(run);
+  while (build.layers_done < checked.run.layers) {
+    {
+      Stopwatch const timed(build.record.wall_time.total);
+      build_layer(run, build);
+      run.output.layer(build);
+    }
+    if (stop_requested()) throw StoppedBySignal("stopped by a signal after a checkpoint Go on with --resume.");
+  }
+  run.output.end(build);
+  return build.record;
+}
+
+}  // namespace layerloop::coupling

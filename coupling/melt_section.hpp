@@ -1,0 +1,14 @@
+#pragma once
+#include <vector>
+
+#include "core/cell_content.hpp"
+#include "core/heat_source.hpp"
+#include "core/melt_record.hpp"
+#include "coupling/run_record.hpp"
+
+namespace layerloop::coupling {
+
+/// Cuts across the tracks at a quarter, half and three quarters of their length.
+std::vector<MeltSection> melt_sections(MeltRecord const& melt, CellContent const& cells, std::vector<Track> const& tracks);
+
+}  // namespace layerloop::coupling
