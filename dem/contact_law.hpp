@@ -9,15 +9,18 @@ namespace layerloop::dem {
 /// prefactors.
 ///
 /// With the overlap d, the reduced radius R and mass m, and root = sqrt(R d):
-///   normal      4/3 E root d - g_n v_n - k A,       1/E = sum (1 - nu^2)/E_i      (k: cohesion energy density, A:
-///   contact area) tangential  -(8 G root s + g_t v_t), cut at the Coulomb bound; 1/G = sum 2 (2 - nu)(1 + nu)/E_i
-///   damping     g_n = -2 sqrt(5/6) b sqrt(2 E root m), g_t with 8 G in place of 2 E, b = ln e / sqrt(ln^2 e + pi^2)
-///   rolling     torque mu_r R (4/3 E root d) against the relative rotation, its torsional part left out
+///   normal      4/3 E root d - g_n v_n - k A,        1/E = sum (1 - nu^2)/E_i      (k: cohesion energy density, A:
+///   contact area) tangential  -(8 G root s + g_t v_t), cut at the Coulomb bound;  1/G = sum 2 (2 - nu)(1 + nu)/E_i
+///   damping     g_n = -2 sqrt(5/6) b sqrt(2 E root m), g_t with 8 G in place of 2 E;  b = ln e / sqrt(ln^2 e + pi^2)
+///   rolling     torque mu_r R (4/3 E root d) against the relative rotation, without its torsional part
 /// The normal force is not cut at zero before separation: then the restitution is e exactly at any speed (Antypov &
 /// Elliott, EPL 94 (2011) 50004). A sliding contact rescales its spring to the bound and drops tangential damping.
 /// Forms as in LIGGGHTS
 /// (`hertz tangential history rolling_friction cdt cohesion sjkr2`); cdt is model A of Ai et al., Powder Technol. 206
-/// (2011) 269. Walls are of the grains' material: both bodies deform, R is the radius and m the mass of the grain.
+/// (2011) 269. Velocities come half a step late (leapfrog): under a force K + g v that acts as if the mass were m - g
+/// dt/2 and damps too much by the share g dt/(4 m). Normal damping is reduced by it, so that the restitution is of
+/// second order in the step. Walls are of the grains' material: both bodies deform, R is the radius and m the mass of
+/// the grain.
 struct ContactLaw {
   double normal_stiffness = 0;      ///< 4/3 E [Pa]
   double tangential_stiffness = 0;  ///< 8 G [Pa]
@@ -67,7 +70,8 @@ struct ContactAction {
   double const adhesive = c.radius * c.overlap;
 
   double const vn = c.vx * c.nx + c.vy * c.ny + c.vz * c.nz;
-  double const repulsive = elastic - law.normal_damping * viscous * vn;
+  double const viscosity_n = law.normal_damping * viscous;
+  double const repulsive = elastic - viscosity_n * vn * c.mass / (c.mass + 0.25 * dt * viscosity_n);
   double const normal = repulsive - law.cohesion * adhesive;
 
   double const tx = c.vx - vn * c.nx - (c.sy * c.nz - c.sz * c.ny);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
@@ -58,7 +59,7 @@ std::int64_t Simulation::look() {
   Watch const seen = shared_watch();
   if (seen.broken > 0) fail(find_lost_grain());
   largest_overlap_ = std::max(largest_overlap_, seen.overlap);
-  if (seen.overlap > overlap_limit) fail(find_overlap());
+  if (seen.overlap > overlap_limit) fail(find_overlap(seen.overlap));
   if (seen.overlap > nip_limit && fastest_wall_ > 0) take_out_nipped();
 
   double const dt = motion_.time_step, step = std::sqrt(seen.step_squared), speed = std::max(step / dt, fastest_wall_);
@@ -128,9 +129,7 @@ void Simulation::take_out_nipped() {
   std::vector<char> nipped(grains_.size(), 0);
   for_each_overlap([&](std::size_t i, std::size_t j, double overlap, std::string const*) {
     if (overlap <= nip_limit) return;
-    bool const first_is_smaller =
-        grains_.radius[i] < grains_.radius[j] || (grains_.radius[i] == grains_.radius[j] && i <= j);
-    nipped[first_is_smaller ? i : j] = 1;
+    nipped[grains_.radius[i] <= grains_.radius[j] ? i : j] = 1;  // the first has the lower id
   });
   nipped_ += take_out(nipped);
 }
@@ -171,9 +170,10 @@ Simulation::Fault Simulation::find_lost_grain() const {
   return {};
 }
 
-Simulation::Fault Simulation::find_overlap() const {
+Simulation::Fault Simulation::find_overlap(double seen) const {
   Grains const& g = grains_;
-  double worst = 0;
+  double worst =
+      -std::numeric_limits<double>::infinity();  // the deepest may have come apart since: the closest is named then
   std::size_t grain = 0;
   std::string other;
   for_each_overlap([&](std::size_t i, std::size_t j, double overlap, std::string const* wall) {
@@ -183,13 +183,11 @@ Simulation::Fault Simulation::find_overlap() const {
     other = wall ? *wall : fmt::format("grain {}", g.id[j]);
   });
   if (other.empty()) return {};
-  return {
-      worst,
-      fmt::format(
-          "grain {} overlaps {} by {:.1f} % of its diameter at {} ({:.0f} % is the limit: contacts are too soft, or "
-          "the step is too long) use a stiffer contact.youngs_modulus, a smaller contact.time_step_fraction or a "
-          "lower machine.recoating_speed",
-          g.id[grain], other, 100 * worst, place(g, grain), 100 * overlap_limit)};
+  return {worst,
+          fmt::format("grain {} overlaps {} by {:.1f} % of its diameter at {} ({:.0f} % is the limit: contacts are too "
+                      "soft, or the step is too long) use a stiffer contact.youngs_modulus, a smaller "
+                      "contact.time_step_fraction or a lower machine.recoating_speed",
+                      g.id[grain], other, 100 * seen, place(g, grain), 100 * overlap_limit)};
 }
 
 Simulation::Fault Simulation::find_fastest() const {

@@ -7,9 +7,10 @@
 namespace layerloop::dem {
 namespace {
 
+/// Smallest gap between grain j, which stays, and grain i on its way down by `lowered`.
 double gap(PowderBed const& bed, double period, std::size_t i, std::size_t j, double lowered) {
-  double const dx = bed.x[i] - bed.x[j], dy = std::remainder(bed.y[i] - bed.y[j], period),
-               dz = bed.z[i] - lowered - bed.z[j];
+  double const dx = bed.x[i] - bed.x[j], dy = std::remainder(bed.y[i] - bed.y[j], period);
+  double const above = bed.z[i] - bed.z[j], dz = above - std::clamp(above, 0.0, lowered);
   return std::sqrt(dx * dx + dy * dy + dz * dz) - bed.radius[i] - bed.radius[j];
 }
 

@@ -92,7 +92,7 @@ class Simulation {
 
   /// Something that must not be, seen on this rank; no text: nothing.
   struct Fault {
-    double severity = -1;
+    double severity = -std::numeric_limits<double>::infinity();
     std::string text;
   };
 
@@ -112,7 +112,8 @@ class Simulation {
   /// Throws the worst fault of all ranks, on all of them. Collective.
   [[noreturn]] void fail(Fault const& own);
   Fault find_lost_grain() const;
-  Fault find_overlap() const;
+  /// \param seen  largest overlap over diameter since the last look
+  Fault find_overlap(double seen) const;
   Fault find_fastest() const;
   bool is_inside(std::size_t row) const;
 
