@@ -48,8 +48,8 @@ constexpr double finest_facet = 1.3;    ///< circumradius where the surface is u
 constexpr double coarsest_facet = 12;
 constexpr double growth = 0.4;        ///< of the circumradius per cell of distance from uneven places
 constexpr double crease_spacing = 4;  ///< of the vertices along the slab's edges
-constexpr std::int64_t rim = 4;       ///< cells of bare plate around the meshed part
-constexpr std::int64_t pit_wall = 2;  ///< cells that the slab reaches into the pit's walls
+constexpr std::int64_t rim = 8;       ///< cells of bare plate around the meshed part
+constexpr std::int64_t pit_wall = 6;  ///< cells that the slab reaches into the pit's walls
 constexpr std::size_t vertices_per_column =
     8;                         ///< refinement stops there (an uneven surface takes 2); wrap() mends the rest
 constexpr double snap = 1e-4;  ///< what lies so close to a plane of the slab is put onto it

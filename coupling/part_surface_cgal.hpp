@@ -8,7 +8,7 @@
 namespace layerloop::coupling {
 
 /// Outer surface of plate and part: closed, oriented, manifold, free of self-intersection. The plate is a slab of
-/// heat.substrate_depth. The mesh goes on beyond the deposition zone by two cells into the pit's walls (plate only)
+/// heat.substrate_depth. The mesh goes on beyond the deposition zone by six cells into the pit's walls (plate only)
 /// and, as the periodic continuation of the part, by more than the largest grain radius beyond y = 0 and y = width:
 /// whoever uses it needs no periodic copies. Meshed by restricted Delaunay refinement (CGAL Mesh_3; Boissonnat & Oudot,
 /// Graphical Models 67 (2005) 405): triangles lie within a tenth of a cell of the level surface (surface_level.hpp),
