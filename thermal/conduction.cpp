@@ -27,7 +27,9 @@ std::vector<float>& face_share(Conduction& conduction, int axis) {
 }
 
 float shared(Conduction const& conduction, std::int64_t a, std::int64_t b) {
-  return std::min({1.0f, conduction.fill[a], conduction.fill[b]});
+  return conduction.fill[a] == 0 || conduction.fill[b] == 0
+             ? 0
+             : std::min(1.0f, 0.5f * (conduction.fill[a] + conduction.fill[b]));
 }
 
 /// Rows of `box` enlarged by `layer` cells, cut to where the metal begins and ends.
@@ -97,10 +99,11 @@ void add_far_faces(Conduction& conduction, HeatCells const& cells, std::array<st
 
 }  // namespace
 
-void Conduction::melt(std::int64_t cell_index, std::span<char const> melted) {
+void Conduction::melt(std::int64_t cell_index) {
   for (auto const& [axis, step] : directions) {
     std::int64_t const next = cell_index + step * stride(box, axis);
-    if (next < 0 || next >= box.size() || !melted[next]) continue;
+    if (next < 0 || next >= box.size()) continue;
+    if (fill[next] == 0) continue;
     face_share(*this, axis)[step < 0 ? next : cell_index] = shared(*this, cell_index, next);
     for (auto const& [a, b] : {std::pair{cell_index, next}, std::pair{next, cell_index}}) {
       auto face = std::ranges::lower_bound(contacts, a, {}, &ContactFace::cell);

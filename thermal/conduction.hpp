@@ -12,7 +12,7 @@ namespace layerloop::thermal {
 /// A face between two bodies that touch without being one metal: grain on grain, grain on plate.
 struct ContactFace {
   std::int64_t cell, neighbour;  ///< local; `cell` is an own cell
-  double conductivity;           ///< [W/(m K)], share of the face included; 0 once both cells have melted
+  double conductivity;           ///< [W/(m K)], share of the face included; 0 once one of the two has melted
 };
 
 /// A face through which heat leaves towards the far field.
@@ -36,11 +36,12 @@ struct FarField {
 ///
 /// Balance of cell c, in W/m (heat flow / cell size):
 ///   sum_bulk share (Theta_n - Theta_c) + sum_contact k_contact (T_n - T_c) - sum_far share Theta_c.
-/// Bulk faces join cells of one body, or cells that have both been molten; they share what the emptier side fills.
-/// Contact faces join different bodies: a full cell of metal (k at the solidus) in series with one of
-/// `contact_conductivity`. Gas conducts nothing. Far faces: metal over half a cell plus the distance of the far field.
-/// Theta is taken from `EnthalpyTable`; every flow is evaluated alike from both sides, so heat is neither made nor
-/// lost.
+/// Bulk faces join cells of one body, and any two of which one has been molten, because melt wets what it touches. The
+/// share of the face is the mean of what both sides fill, at most 1: exact inside metal; a thin film on full metal is
+/// not cut off from it as the smaller fill would have it. Contact faces join different bodies: a full cell of metal (k
+/// at the solidus) in series with one of `contact_conductivity`. Gas conducts nothing. Far faces: metal over half a
+/// cell plus the distance of the far field. Theta is taken from `EnthalpyTable`; every flow is evaluated alike from
+/// both sides, so heat is neither made nor lost.
 struct Conduction {
   LocalBox box;
   double cell = 0;                               ///< [m]
@@ -52,8 +53,8 @@ struct Conduction {
   std::vector<Row> rows;  ///< own cells
   std::vector<Row> rows_with_neighbours;
 
-  /// Joins a cell that has just melted with its molten neighbours. \param melted  flags of all local cells
-  void melt(std::int64_t cell, std::span<char const> melted);
+  /// Joins a cell that has just melted with its neighbours.
+  void melt(std::int64_t cell);
 };
 
 Conduction make_conduction(HeatCells const& cells, LocalBox const& box, FarField const& far, double bulk_conductivity,

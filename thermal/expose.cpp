@@ -29,7 +29,7 @@ void check(HeatSource const& source, VoxelGrid const& grid) {
 
 /// Highest temperature that the model is trusted with [K].
 double hottest_allowed(Material const& material, bool evaporation) {
-  return evaporation ? material.boiling_point + 1000 : 1.5 * material.boiling_point;
+  return evaporation ? material.boiling_point + 2000 : 1.5 * material.boiling_point;
 }
 
 SurfaceSink make_sink(HeatCells const& cells, HeatGrid const& grid, EnthalpyTable const& table,

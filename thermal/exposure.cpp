@@ -14,10 +14,12 @@ namespace {
 constexpr double stability_margin = 0.95;
 /// Implicit steps, in units of the stable explicit one: with the beam on, and the first after it.
 constexpr double implicit_stride = 4;
-/// Growth with the beam off: the next step is this share of the time since then (temperatures fall as a power of time).
-constexpr double implicit_growth = 0.1;
+/// Longest implicit step with the beam off, as a share of the time since then (temperatures fall as a power of time).
+constexpr double implicit_growth = 0.3;
+/// More Newton iterations than this halve the next step: freezing fronts cross many cells in it.
+constexpr std::int64_t many_iterations = 12;
 /// Automatic choice: an implicit step costs about as much as this many explicit ones.
-constexpr double implicit_price = 300;
+constexpr double implicit_price = 2000;
 constexpr std::int64_t steps_between_checks = 50;
 
 }  // namespace
@@ -61,19 +63,20 @@ void Exposure::rest(double duration, double begin) { relax(duration, begin, fals
 double Exposure::freeze(double begin) { return relax(std::numeric_limits<double>::infinity(), begin, true); }
 
 double Exposure::relax(double duration, double begin, bool until_frozen) {
-  double elapsed = 0, hottest = check();
-  bool const long_enough = solver_ == HeatSolver::automatic && duration > 8 * implicit_price * stable_step_;
-  while (elapsed < duration) {
-    if (until_frozen && hottest < system_.table.solidus()) break;
-    // 1000 steps into the relaxation, the next implicit step spans 100 explicit ones and the one after it more.
-    bool const implicit =
-        solver_ == HeatSolver::implicit_steps || (long_enough && elapsed > 4 * implicit_price * stable_step_);
-    double span = implicit ? std::max(implicit_stride * stable_step_, implicit_growth * elapsed)
-                           : static_cast<double>(steps_between_checks) * stable_step_;
-    span = std::min(span, duration - elapsed);
-    if (implicit) {
-      implicit_step({}, span, begin + elapsed + span);
+  double const price = implicit_price * stable_step_, solidus = system_.table.solidus();
+  double elapsed = 0, hottest = check(), implicit_span = implicit_stride * stable_step_;
+  while (elapsed < duration && !(until_frozen && hottest < solidus)) {
+    bool const pays = implicit_growth * elapsed > price && duration - elapsed > 4 * price && hottest < solidus;
+    double span = 0;
+    if (solver_ == HeatSolver::implicit_steps || (solver_ == HeatSolver::automatic && pays)) {
+      if (pays) implicit_span = std::max(implicit_span, price);
+      span = std::min(implicit_span, duration - elapsed);
+      std::int64_t const iterations = implicit_step({}, span, begin + elapsed + span);
+      double const factor = iterations > many_iterations ? 0.5 : 1 + implicit_growth;
+      implicit_span =
+          std::max(implicit_stride * stable_step_, std::min(factor * span, implicit_growth * (elapsed + span)));
     } else {
+      span = std::min(static_cast<double>(steps_between_checks) * stable_step_, duration - elapsed);
       explicit_steps({}, span, begin + elapsed, static_cast<std::int64_t>(std::ceil(span / stable_step_ - 1e-9)));
     }
     elapsed = duration - elapsed <= span ? duration : elapsed + span;
@@ -97,11 +100,12 @@ void Exposure::explicit_steps(std::vector<CellPower> const& source, double durat
   explicit_count_ += count;
 }
 
-void Exposure::implicit_step(std::vector<CellPower> const& source, double dt, double end) {
+std::int64_t Exposure::implicit_step(std::vector<CellPower> const& source, double dt, double end) {
   if (!implicit_) implicit_ = std::make_unique<ImplicitSolver>(system_);
-  implicit_->step(source, dt);
+  std::int64_t const iterations = implicit_->step(source, dt);
   pools_.observe(system_, end);
   ++implicit_count_;
+  return iterations;
 }
 
 double Exposure::check() {

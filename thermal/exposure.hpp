@@ -29,7 +29,7 @@ class Exposure {
  private:
   double relax(double duration, double begin, bool until_frozen);
   void explicit_steps(std::vector<CellPower> const& source, double duration, double begin, std::int64_t count);
-  void implicit_step(std::vector<CellPower> const& source, double dt, double end);
+  std::int64_t implicit_step(std::vector<CellPower> const& source, double dt, double end);
   bool at_rest(double hottest);  ///< no heat flows between the cells any more
   double check();                ///< hottest enthalpy over the ranks; throws when the state is not physical
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <deque>
+#include <tuple>
 
 #include "core/error.hpp"
 
@@ -26,15 +28,11 @@ void check(CellContent const& content) {
   }
 }
 
-/// Best host among the 26 cells around: of the same body first, then the best filled, then the lowest index; -1: none.
+/// Host among the 26 cells around, in the order that HeatCells states; the lowest index among equals; -1: none.
 std::int64_t best_neighbour(HeatCells const& cells, std::vector<double> const& metal, std::int64_t cell) {
   auto const c = cells.grid.coordinates(cell);
   std::int64_t best = -1;
-  auto const better = [&](std::int64_t a, std::int64_t b) {
-    bool const own_a = cells.body[a] == cells.body[cell], own_b = cells.body[b] == cells.body[cell];
-    if (own_a != own_b) return own_a;
-    return metal[a] != metal[b] ? metal[a] > metal[b] : a < b;
-  };
+  std::tuple<int, int, double, std::int64_t> best_rank;  // the smallest wins
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
@@ -43,7 +41,10 @@ std::int64_t best_neighbour(HeatCells const& cells, std::vector<double> const& m
         if (!cells.grid.contains(at)) continue;
         std::int64_t const candidate = cells.grid.index(at[0], at[1], at[2]);
         if (metal[candidate] < HeatCells::least_fill) continue;
-        if (best < 0 || better(candidate, best)) best = candidate;
+        bool const other_body = cells.body[candidate] != cells.body[cell];
+        std::tuple const rank{int{other_body}, std::abs(dx) + std::abs(dy) + std::abs(dz), -metal[candidate],
+                              candidate};
+        if (best < 0 || rank < best_rank) best = candidate, best_rank = rank;
       }
     }
   }

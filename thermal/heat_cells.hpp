@@ -12,11 +12,12 @@ enum class SideY { periodic, far_field, adiabatic };
 /// The cells that carry an unknown, and which of them stands for every other cell. Shapes: grid.size().
 ///
 /// A cell that holds less metal than `least_fill` of its volume has no unknown of its own: the small mass would
-/// overheat under the power that its surface catches. Its metal, and the power that lands in it, belong to a neighbour:
-/// of its own body first, then the best filled of the 26 around it. Mass and power are exact; what is lost is the shape
-/// of the surface below a cell. Power that lands in a cell without metal goes to the nearest cell with an unknown.
+/// overheat under the power that its surface catches, and would ask for short steps. Its metal, and the power that
+/// lands in it, belong to a neighbour: of its own body first, then the nearest of the 26 around it, then the best
+/// filled. Mass and power are exact; what is lost is the shape of the surface below a cell. Power that lands in a cell
+/// without metal goes to the nearest cell with an unknown.
 struct HeatCells {
-  static constexpr double least_fill = 0.2;
+  static constexpr double least_fill = 0.35;
 
   VoxelGrid grid;
   SideY side_y;

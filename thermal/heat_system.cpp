@@ -66,8 +66,10 @@ void finish_step(HeatSystem& system, double dt) {
 #pragma omp critical
     newly_melted.insert(newly_melted.end(), mine.begin(), mine.end());
   }
-  for (std::int64_t c : newly_melted) system.melted[c] = 1;
-  for (std::int64_t c : newly_melted) system.conduction.melt(c, system.melted);
+  for (std::int64_t c : newly_melted) {
+    system.melted[c] = 1;
+    system.conduction.melt(c);
+  }
 }
 
 void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt) {

@@ -49,10 +49,15 @@ ImplicitSolver::ImplicitSolver(HeatSystem& system) : system_(system) {
   KSP ksp;
   PC pc;
   check_petsc(SNESGetKSP(snes_, &ksp));
+  SNESLineSearch search;
+  check_petsc(SNESGetLineSearch(snes_, &search));
+  check_petsc(SNESLineSearchSetTolerances(search, PETSC_DEFAULT, 1e30, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                                          PETSC_DEFAULT));  // the default longest step, 1e8, is small in J/m^3
   check_petsc(KSPSetType(ksp, KSPBCGS));
-  check_petsc(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, 500));
+  check_petsc(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
   check_petsc(KSPGetPC(ksp, &pc));
   check_petsc(PCSetType(pc, PCHYPRE));
+  check_petsc(SNESSetLagPreconditioner(snes_, 4));  // setting up multigrid costs as much as solving
   check_petsc(SNESSetFromOptions(snes_));
 }
 
@@ -140,7 +145,7 @@ void ImplicitSolver::jacobian(Vec enthalpy, Mat matrix) {
   check_petsc(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
 }
 
-void ImplicitSolver::step(std::span<CellPower const> source, double dt) {
+std::int64_t ImplicitSolver::step(std::span<CellPower const> source, double dt) {
   Conduction const& conduction = system_.conduction;
   dt_ = dt;
   for (CellPower const& heated : source) {
@@ -163,12 +168,15 @@ void ImplicitSolver::step(std::span<CellPower const> source, double dt) {
                     "\"explicit\"",
                     dt, static_cast<int>(reason)));
   }
+  PetscInt iterations;
+  check_petsc(SNESGetIterationNumber(snes_, &iterations));
   residual(unknown_, residual_);
   for_own_cells(conduction.box, [&](std::int64_t c, std::int64_t) { system_.enthalpy[c] += dt * rate_[c]; });
   system_.heat_to_far_field += dt * far_;
   book(system_.sink, system_.table, dt, trial_);
   for (CellPower const& heated : source) source_rate_[heated.cell] = 0;
   finish_step(system_, dt);
+  return iterations;
 }
 
 }  // namespace layerloop::thermal

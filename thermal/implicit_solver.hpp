@@ -22,8 +22,9 @@ class ImplicitSolver {
   ImplicitSolver(ImplicitSolver const&) = delete;
   ImplicitSolver& operator=(ImplicitSolver const&) = delete;
 
+  /// Returns the Newton iterations it took.
   /// \throws PhysicsError when Newton does not converge (all ranks) \note Collective
-  void step(std::span<CellPower const> source, double dt);
+  std::int64_t step(std::span<CellPower const> source, double dt);
 
   /// h - h_old - dt (conduction + source - sinks) / capacity of every own cell. For PETSc.
   void residual(_p_Vec* enthalpy, _p_Vec* residual);

@@ -20,6 +20,9 @@ SurfaceSink::Flux SurfaceSink::flux(EnthalpyTable const& table, double h) const 
 
 namespace {
 
+/// Share of itself by which a flux may fall within a step for forward Euler to do.
+constexpr double not_stiff = 1e-3;
+
 /// Root of h + rate q(T(h)) = start. \param rate  dt area / volume [s/m]
 double drained(SurfaceSink const& sink, EnthalpyTable const& table, double rate, double start) {
   double low = start - rate * std::max(0.0, sink.flux(table, start).total()), high = start;
@@ -50,10 +53,16 @@ void drain(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<d
   for (std::size_t i = 0; i < sink.cells.size(); ++i) {
     OpenCell& open = sink.cells[i];
     double& h = enthalpy[static_cast<std::size_t>(open.cell)];
-    if (sink.flux(table, h).total() == 0) continue;
-    double const before = h;
-    h = drained(sink, table, dt * open.area / open.metal_volume, before);
-    book(open, sink.flux(table, h), (before - h) * open.metal_volume);
+    auto flux = sink.flux(table, h);
+    if (flux.total() == 0) continue;
+    double const before = h, rate = dt * open.area / open.metal_volume;
+    if (rate * flux.slope * table.temperature_slope(h) < not_stiff) {
+      h -= rate * flux.total();
+    } else {
+      h = drained(sink, table, rate, before);
+      flux = sink.flux(table, h);
+    }
+    book(open, flux, (before - h) * open.metal_volume);
   }
 }
 

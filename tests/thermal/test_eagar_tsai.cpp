@@ -9,10 +9,10 @@ namespace {
 /// integrated numerically to 1e-4 um elsewhere: pool 102.0976 x 41.1274 x 302.5155 um.
 TEST(EagarTsai, PoolAtFiveMicrometres) {
   double const cell = 5e-6;
-  CellContent content = solid_block(cell, {300, 44, 24});
-  content.grid.origin = {0, -22 * cell, -24 * cell};
+  CellContent content = solid_block(cell, {300, 45, 24});
+  content.grid.origin = {0, -22.5 * cell, -24 * cell};
   HeatSettings settings = closed_settings(cell);
-  settings.margin = 100e-6, settings.substrate_depth = 120e-6;
+  settings.margin = 110e-6, settings.substrate_depth = 120e-6;
   HeatSource const source = gaussian_track(content.grid, 60, 80e-6, 0.8, 100e-6, 1400e-6, 0, 2.5e-6);
   HeatOutcome const result = expose(content, source, constant_metal(24, 7300, 789), settings, effects_on({}),
                                     SideY::far_field, Communicator(), Report::silent);

@@ -1,7 +1,5 @@
 #include "thermal/effects/surface_losses.hpp"
 
-#include <cmath>
-
 namespace layerloop::thermal {
 namespace {
 constexpr double stefan_boltzmann = 5.670374419e-8;  // [W/(m^2 K^4)]
@@ -13,7 +11,8 @@ SurfaceLosses::SurfaceLosses(Material const& material, double ambient, double st
       convection_(strength * convection) {}
 
 double SurfaceLosses::flux(double T) const {
-  return radiation_ * (std::pow(T, 4) - std::pow(ambient_, 4)) + convection_ * (T - ambient_);
+  double const T2 = T * T, ambient2 = ambient_ * ambient_;
+  return radiation_ * (T2 + ambient2) * (T2 - ambient2) + convection_ * (T - ambient_);
 }
 
 double SurfaceLosses::slope(double T) const { return 4 * radiation_ * T * T * T + convection_; }
