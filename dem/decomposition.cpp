@@ -58,6 +58,13 @@ std::vector<double> equal_cuts(std::vector<double> x, std::size_t slices) {
 }
 }  // namespace
 
+Decomposition::Decomposition(Communicator const& communicator) : communicator_(communicator) {
+  MPI_Comm node;
+  MPI_Comm_split_type(communicator.handle(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  MPI_Comm_size(node, &ranks_on_node_);
+  MPI_Comm_free(&node);
+}
+
 void Decomposition::redistribute(std::vector<GrainRecord>& grains, std::vector<LocalSpring> const& old_springs,
                                  std::vector<ContactSpring>& springs) {
   springs.clear();

@@ -10,7 +10,7 @@ namespace layerloop::dem {
 /// Grains shared out over the ranks in slices along x with equal numbers of grains, cut anew at every rebuild.
 class Decomposition {
  public:
-  explicit Decomposition(Communicator const& communicator) : communicator_(communicator) {}
+  explicit Decomposition(Communicator const& communicator);
 
   /// Sends every grain, and the springs of its contacts, to the rank whose slice holds it. Collective.
   /// \param springs  in: those of this rank's grains; out: those of its new grains, sorted
@@ -24,9 +24,11 @@ class Decomposition {
   void update_ghosts(Grains& grains);
 
   int size() const { return communicator_.size(); }
+  int ranks_on_node() const { return ranks_on_node_; }  ///< that share this rank's cores
 
  private:
   Communicator communicator_;
+  int ranks_on_node_ = 1;
   std::vector<double> cuts_;                          ///< slice r is [cuts_[r], cuts_[r + 1])
   std::vector<std::vector<std::int32_t>> sent_rows_;  ///< by rank
   std::vector<std::size_t> received_;                 ///< ghosts by rank

@@ -16,7 +16,7 @@ constexpr double overlap_limit = 0.05;  // of the smaller diameter
 constexpr double nip_limit = 0.02;      // of the smaller diameter, while a wall moves
 constexpr double step_limit = 0.1;      // of the smallest radius
 constexpr double least_steps_a_contact = 8;
-constexpr std::int64_t steps_between_looks = 10;
+constexpr std::int64_t steps_between_looks = 20;
 constexpr std::int64_t steps_between_sink_checks = 500;
 
 std::string place(Grains const& g, std::size_t i) {

@@ -86,7 +86,7 @@ void fill_pair_constants(PairContacts& pairs, Grains const& g, std::vector<Conta
     pairs.reduced_mass[k] = g.mass[i] * g.mass[j] / (g.mass[i] + g.mass[j]);
     pairs.inverse_diameter[k] = 0.5 / std::min(g.radius[i], g.radius[j]);
     if (ContactSpring const* old = find_spring(springs, g.id[i], g.id[j])) {
-      pairs.touching[k] = 1;
+      pairs.touching[k] = -1;
       pairs.spring_x[k] = old->spring[0];
       pairs.spring_y[k] = old->spring[1];
       pairs.spring_z[k] = old->spring[2];
@@ -164,36 +164,31 @@ double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw cons
   double const* __restrict inverse_diameter = pairs.inverse_diameter.data();
   double *__restrict spring_x = pairs.spring_x.data(), *__restrict spring_y = pairs.spring_y.data(),
          *__restrict spring_z = pairs.spring_z.data();
+  std::int32_t* __restrict touching = pairs.touching.data(), * __restrict action_of = pairs.action.data();
   double const half = 0.5 * period;
   ContactLaw const law_here = law;
   double worst = 0;
 
   for (std::size_t at = from; at < to; at += block) {
     auto const count = static_cast<std::int32_t>(std::min(block, to - at));
-    alignas(64) double gap[block];            // squared distance minus squared sum of radii
+    auto const start = static_cast<std::int32_t>(at);
+    alignas(64) std::int32_t touches[block];  // -1: yes, 0: no
     alignas(64) std::int32_t contact[block];  // the pairs that touch
-    alignas(64) double had_spring[block];
 #pragma omp simd
     for (std::int32_t l = 0; l < count; ++l) {
-      std::size_t const k = at + static_cast<std::size_t>(l);
-      std::int32_t const i = first[k], j = second[k];
+      std::int32_t const k = start + l, i = first[k], j = second[k];
       double const dx = x[i] - x[j], dz = z[i] - z[j];
       double dy = y[i] - y[j];
       dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
-      gap[l] = dx * dx + dy * dy + dz * dz - radius_sum[k] * radius_sum[k];
+      touches[l] = dx * dx + dy * dy + dz * dz < radius_sum[k] * radius_sum[k] ? -1 : 0;
     }
     std::int32_t contacts = 0;
-    auto const first_action = static_cast<std::int32_t>(at + 1);
     for (std::int32_t l = 0; l < count; ++l) {
-      std::size_t const k = at + static_cast<std::size_t>(l);
-      bool const touches = gap[l] < 0;
-      contact[contacts] = static_cast<std::int32_t>(k);
-      had_spring[contacts] = pairs.touching[k];
-      pairs.touching[k] = touches;
-      pairs.action[k] = touches ? first_action + contacts : 0;
-      contacts += touches;
+      contact[contacts] = start + l;
+      action_of[start + l] = touches[l] & (start + 1 + contacts);
+      contacts -= touches[l];
     }
-    PairAction* __restrict action = pairs.actions.data() + first_action;
+    PairAction* __restrict action = pairs.actions.data() + start + 1;
 #pragma omp simd reduction(max : worst)
     for (std::int32_t l = 0; l < contacts; ++l) {
       std::int32_t const k = contact[l], i = first[k], j = second[k];
@@ -203,7 +198,7 @@ double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw cons
       double const distance = std::sqrt(dx * dx + dy * dy + dz * dz), inverse = 1 / distance;
       double const overlap = radius_sum[k] - distance;
       double const arm_i = radius[i] - 0.5 * overlap, arm_j = radius[j] - 0.5 * overlap;
-      bool const had = had_spring[l] != 0;
+      bool const had = touching[k] != 0;
       ContactAction const a =
           act(law_here,
               {overlap, reduced_radius[k], reduced_mass[k], dx * inverse, dy * inverse, dz * inverse, vx[i] - vx[j],
@@ -220,6 +215,7 @@ double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw cons
       double const relative = overlap * inverse_diameter[k];
       worst = relative > worst ? relative : worst;
     }
+    for (std::int32_t l = 0; l < count; ++l) touching[start + l] = touches[l];
   }
   return worst;
 }

@@ -20,7 +20,7 @@ struct PairContacts {
   std::vector<double> radius_sum, reduced_radius, reduced_mass;
   std::vector<double> inverse_diameter;              ///< of the smaller grain
   std::vector<double> spring_x, spring_y, spring_z;  ///< valid while `touching`
-  std::vector<char> touching;                        ///< at the last evaluation
+  std::vector<std::int32_t> touching;                ///< at the last evaluation: -1 yes, 0 no
   std::vector<std::int32_t> action;                  ///< row in `actions`; 0 (nothing) when not touching
   std::vector<PairAction> actions;
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "dem/step_barrier.hpp"
 
 namespace layerloop::dem {
 namespace {
@@ -103,8 +104,9 @@ void Simulation::rebuild() {
   z_built_.assign(grains_.z.begin(), grains_.z.begin() + static_cast<std::ptrdiff_t>(grains_.owned));
   time_built_ = time();
 
-  threads_ = std::clamp(static_cast<int>(grains_.owned / grains_a_thread), 1, omp_get_max_threads());
-  batches_.resize(static_cast<std::size_t>(threads_));
+  int const cores = std::max(1, omp_get_num_procs() / decomposition_.ranks_on_node());
+  team_.allow(std::clamp(static_cast<int>(grains_.owned / grains_a_thread), 1, std::min(omp_get_max_threads(), cores)));
+  batches_.resize(static_cast<std::size_t>(team_.most()));
   for (WallBatch& batch : batches_) batch.reserve(wall_contacts_.springs.size());
 }
 
@@ -112,13 +114,15 @@ void Simulation::advance(std::int64_t steps) {
   std::int64_t const end = steps_ + steps;
   while (steps_ < end) {
     std::int64_t const safe = look();
-    run_steps(std::min(safe, end - steps_));
+    std::int64_t const count = std::min(safe, end - steps_);
+    team_.time(count, [&] { run_steps(count); });
   }
 }
 
 void Simulation::run_steps(std::int64_t count) {
   std::int64_t pushed_back = 0;
-#pragma omp parallel num_threads(threads_)
+  StepBarrier barrier;
+#pragma omp parallel num_threads(team_.threads())
   {
     int const thread = omp_get_thread_num(), threads = omp_get_num_threads();
     Range const own = share(grains_.owned, thread, threads), pairs = share(pairs_.size(), thread, threads);
@@ -133,11 +137,10 @@ void Simulation::run_steps(std::int64_t count) {
     double const dt = motion_.time_step;
     for (std::int64_t s = 0; s < count; ++s) {
       drift(own.from, own.to);
-#pragma omp barrier
+      barrier.wait(threads);
       if (decomposition_.size() > 1) {
-#pragma omp master
-        decomposition_.update_ghosts(grains_);
-#pragma omp barrier
+        if (thread == 0) decomposition_.update_ghosts(grains_);
+        barrier.wait(threads);
       }
       double const now = static_cast<double>(steps_ + s + 1) * dt;
       double const pair_overlap =
@@ -146,7 +149,7 @@ void Simulation::run_steps(std::int64_t count) {
                                                rig_.walls, motion_.at_walls, now, dt, walls.from, walls.to);
       watch.overlap = std::max({watch.overlap, pair_overlap, report.worst_overlap});
       pushed = report.pushed_back;
-#pragma omp barrier
+      barrier.wait(threads);
       kick(own.from, own.to, watch);
     }
 #pragma omp critical

@@ -12,6 +12,7 @@
 #include "dem/decomposition.hpp"
 #include "dem/grains.hpp"
 #include "dem/pair_contacts.hpp"
+#include "dem/thread_team.hpp"
 #include "dem/wall_contacts.hpp"
 #include "dem/walls.hpp"
 
@@ -133,7 +134,7 @@ class Simulation {
   double time_built_ = 0, skin_ = 0, smallest_radius_ = 0, largest_radius_ = 0, fastest_wall_ = 0;
   double largest_overlap_ = 0, blade_force_ = 0;
   std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, pushed_back_ = 0, next_sink_check_ = 0;
-  int threads_ = 1;
+  ThreadTeam team_;
 };
 
 }  // namespace layerloop::dem
