@@ -123,7 +123,8 @@ std::string profiles(ReportInput const& input) {
         caption, "profiles.csv");
   };
   return plot("relative density", std::move(density), "How densely the layer lies along the way of the blade.") +
-         plot("effective thickness [\xc2\xb5m]", std::move(thickness), "Powder per area, as if it were solid.") +
+         plot("effective thickness [\xc2\xb5m]", std::move(thickness),
+              "Mean height of the surface over the plane one nominal layer below the blade.") +
          plot("mean diameter [\xc2\xb5m]", std::move(diameter),
               "A slope means that the blade sorts the grains by size.");
 }
@@ -309,7 +310,7 @@ std::string wall_time_bar(ReportInput const& input) {
                            {"rays", t.rays},
                            {"heat", t.heat},
                            {"solid and mesh", t.mesh},
-                           {"files", t.io},
+                           {"pictures and files", t.io},
                            {"rest", rest}},
                           "s"),
                 fmt::format("{} s in all.", significant(t.total)), "wall_time.csv");

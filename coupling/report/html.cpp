@@ -77,7 +77,7 @@ std::string significant(double value, int digits) {
   return fmt::format("{}{:.{}f}", value < 0 ? "&minus;" : "", std::abs(value), std::max(0, digits - 1 - exponent));
 }
 
-std::string chosen(double value) { return fmt::format("{:.6g}", value); }
+std::string chosen(double value) { return fmt::format("{}{:.6g}", value < 0 ? "&minus;" : "", std::abs(value)); }
 
 std::string count(std::int64_t number) {
   std::string digits = std::to_string(number);

@@ -24,8 +24,8 @@ LedgerTable mass_table(Ledger const& l) {
            {"in the bed", micrograms(l.mass_bed)},
            {"in the overflow", micrograms(l.mass_overflow)},
            {"melted into the part", micrograms(l.mass_melted)},
-           {"evaporated", micrograms(l.mass_evaporated)},
-           {"lost", micrograms(l.mass_lost)}},
+           {"lost", micrograms(l.mass_lost)},
+           {"seen to evaporate by the heat model, not taken off the part", micrograms(l.mass_evaporated)}},
           {small_enough("relative error", l.mass_relative_error, mass_limit)}};
 }
 

@@ -24,8 +24,8 @@ struct Range {
     if (low > high) return {0, 1};
     double const span = high - low;
     // What varies by less than 4 % is drawn as nearly level, so that scatter does not look like a trend.
-    double const least = std::max({span, 0.04 * std::abs(high), 0.04 * std::abs(low), 1e-12});
-    double const room = 0.5 * (least - span) + share * least;
+    double const least = std::max(span, 0.04 * std::max(std::abs(low), std::abs(high)));
+    double const room = least > 0 ? 0.5 * (least - span) + share * least : 1;
     return {low - room, high + room};
   }
 };

@@ -111,7 +111,7 @@ std::string cards(ReportInput const& input) {
            fmt::format("{} grains fed, {} in the last layer", count(input.record.ledger.particles_fed),
                        count(last.grains_in_layer))) +
       card("Effective layer thickness", um(m.effective_thickness), "&micro;m",
-           fmt::format("powder per area, as if it were solid; real: {} &micro;m", um(m.real_effective_thickness))) +
+           fmt::format("surface over the nominal plate level; real: {} &micro;m", um(m.real_effective_thickness))) +
       card("Packing of the layer", significant(m.volume_fraction_real), "",
            fmt::format("volume fraction, real; {} % of the surface is covered", significant(100 * m.surface_coverage)));
   if (input.laser()) all += laser_cards(last);

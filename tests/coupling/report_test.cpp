@@ -163,6 +163,15 @@ TEST(Plot, ticks_are_round_and_inside) {
   EXPECT_EQ(round_ticks(0, 1, 5).label(0.2), "0.2");
 }
 
+TEST(Plot, what_is_zero_everywhere_is_a_level_line) {
+  std::string const plot =
+      line_plot({.x_label = "x", .y_label = "y", .series = {{.name = "flat", .x = {1, 2}, .y = {0, 0}}}});
+  EXPECT_TRUE(holds(plot, ">0.5<") && holds(plot,
+                                            ">\xe2\x88\x92"
+                                            "0.5<"))
+      << plot;
+}
+
 TEST(Plot, map_stays_where_its_cells_are) {
   Raster const map{.x0 = 10, .y0 = -5, .cell = 2, .nx = 3, .ny = 2, .values = {1, 2, 3, 4, 5, 6}};
   Raster const part = crop(map, 1, 9, -4, 1);
