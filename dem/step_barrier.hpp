@@ -5,9 +5,9 @@
 
 namespace layerloop::dem {
 
-/// Barrier for threads that meet every few tens of microseconds: spins briefly, then hands its core to whoever needs
-/// it. An OpenMP barrier spins for milliseconds first, which is the end of all speed where more threads than cores are
-/// busy.
+/// Barrier for threads that meet every few tens of microseconds: spins for about a step, then hands its core to whoever
+/// needs it. An OpenMP barrier spins for milliseconds first, which is the end of all speed where more threads than
+/// cores are busy.
 class StepBarrier {
  public:
   /// \param threads  that meet here: the same for all of them
@@ -20,7 +20,7 @@ class StepBarrier {
       return;
     }
     for (int spin = 0; round_.load(std::memory_order_acquire) == round; ++spin) {
-      if (spin > 500) sched_yield();
+      if (spin > 50000) sched_yield();  // some tens of microseconds: longer than threads that run ever wait
     }
   }
 

@@ -4,8 +4,8 @@
 
 namespace layerloop::dem {
 
-/// Chooses between one thread and all that are allowed by timing both now and then: where other programs keep the cores
-/// busy, threads that wait for one another every step are slower than one. Results do not depend on the choice.
+/// Chooses between one thread and all that are allowed by timing both: where other programs keep the cores busy,
+/// threads that wait for one another every step are slower than one. Results do not depend on the choice.
 class ThreadTeam {
  public:
   void allow(int most) { most_ = most; }
@@ -20,35 +20,26 @@ class ThreadTeam {
     work();
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     steps_ += steps;
-    if (steps_ >= (trial_ == Trial::none ? steps_between_trials : steps_a_trial)) next();
+    if (steps_ >= until_) choose();
   }
 
  private:
-  enum class Trial { many, one, none };
-  static constexpr std::int64_t steps_a_trial = 200, steps_between_trials = 10000;
+  static constexpr std::int64_t trial = 300;      // steps; threads that have not paid then stop
+  static constexpr std::int64_t with_one = 8000;  // steps of one thread before all get another try
 
-  void next() {
+  void choose() {
     double const pace = seconds_ / static_cast<double>(steps_);
+    if (!many_) pace_of_one_ = pace;
+    many_ = !many_ || pace < pace_of_one_;
+    until_ = many_ ? trial : with_one;
     seconds_ = 0;
     steps_ = 0;
-    if (trial_ == Trial::many) {
-      pace_of_many_ = pace;
-      many_ = false;
-      trial_ = Trial::one;
-    } else if (trial_ == Trial::one) {
-      many_ = pace_of_many_ < pace;
-      trial_ = Trial::none;
-    } else {
-      many_ = true;
-      trial_ = Trial::many;
-    }
   }
 
   int most_ = 1;
-  bool many_ = true;
-  Trial trial_ = Trial::many;
-  double seconds_ = 0, pace_of_many_ = 0;
-  std::int64_t steps_ = 0;
+  bool many_ = false;
+  double seconds_ = 0, pace_of_one_ = 0;
+  std::int64_t steps_ = 0, until_ = trial;
 };
 
 }  // namespace layerloop::dem
