@@ -13,7 +13,7 @@ namespace {
 
 constexpr double stability_margin = 0.95;
 /// Implicit steps, in units of the stable explicit one: with the beam on, and the first after it.
-constexpr double implicit_stride = 4;
+constexpr double implicit_stride = 2;
 /// Longest implicit step with the beam off, as a share of the time since then (temperatures fall as a power of time).
 constexpr double implicit_growth = 0.3;
 /// More Newton iterations than this halve the next step: freezing fronts cross many cells in it.

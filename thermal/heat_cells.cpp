@@ -28,11 +28,12 @@ void check(CellContent const& content) {
   }
 }
 
-/// Host among the 26 cells around, in the order that HeatCells states; the lowest index among equals; -1: none.
+/// Host among the 26 cells around, in the order that HeatCells states; -1: none. Among equals the one below, then the
+/// one at lower x: mirrored beds get mirrored hosts.
 std::int64_t best_neighbour(HeatCells const& cells, std::vector<double> const& metal, std::int64_t cell) {
   auto const c = cells.grid.coordinates(cell);
   std::int64_t best = -1;
-  std::tuple<int, int, double, std::int64_t> best_rank;  // the smallest wins
+  std::tuple<int, int, double, int, int, int> best_rank;  // the smallest wins
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
@@ -42,8 +43,12 @@ std::int64_t best_neighbour(HeatCells const& cells, std::vector<double> const& m
         std::int64_t const candidate = cells.grid.index(at[0], at[1], at[2]);
         if (metal[candidate] < HeatCells::least_fill) continue;
         bool const other_body = cells.body[candidate] != cells.body[cell];
-        std::tuple const rank{int{other_body}, std::abs(dx) + std::abs(dy) + std::abs(dz), -metal[candidate],
-                              candidate};
+        std::tuple const rank{int{other_body},
+                              std::abs(dx) + std::abs(dy) + std::abs(dz),
+                              -std::round(1e6 * metal[candidate]),
+                              dz,
+                              dx,
+                              dy};
         if (best < 0 || rank < best_rank) best = candidate, best_rank = rank;
       }
     }

@@ -149,7 +149,7 @@ std::int64_t ImplicitSolver::step(std::span<CellPower const> source, double dt) 
   Conduction const& conduction = system_.conduction;
   dt_ = dt;
   for (CellPower const& heated : source) {
-    source_rate_[heated.cell] = heated.watts / conduction.cell * conduction.per_capacity[heated.cell];
+    source_rate_[heated.cell] += heated.watts / conduction.cell * conduction.per_capacity[heated.cell];
   }
   PetscScalar* h;
   check_petsc(VecGetArray(unknown_, &h));
