@@ -81,6 +81,7 @@ void members(Of<Consolidation> auto& part, Visit&& visit) {
   visit("melted_mass", part.melted_mass);
   visit("melted_cell_mass", part.melted_cell_mass);
   visit("largest_displacement", part.largest_displacement);
+  visit("surface_height_correction", part.surface_height_correction);
   visit("mesh_volume", part.mesh_volume);
   visit("field_volume", part.field_volume);
   visit("triangles", part.triangles);

@@ -99,6 +99,17 @@ TEST(RunRecord, every_member_survives) {
   EXPECT_EQ(back.wall_time.total, 7);
 }
 
+TEST(RunRecord, no_member_is_forgotten) {
+  // These structures hold eight-byte numbers only, so their size counts their members.
+  json const all = sample_run().record;
+  json const& layer = all["layers"][0];
+  EXPECT_EQ(all["ledger"].size(), sizeof(Ledger) / 8);
+  EXPECT_EQ(all["wall_time"].size(), sizeof(WallTime) / 8);
+  EXPECT_EQ(layer["consolidation"].size(), sizeof(Consolidation) / 8);
+  EXPECT_EQ(layer["pool"].size(), sizeof(PoolSize) / 8);
+  EXPECT_EQ(layer["metrics"]["bins"][0].size(), sizeof(LayerBin) / 8);
+}
+
 TEST(RunRecord, damaged_text_is_named) {
   json damaged = sample_run().record;
   damaged["ledger"].erase("mass_bed");
