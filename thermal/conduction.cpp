@@ -179,10 +179,7 @@ void bulk_balance(Conduction const& conduction, Row const& row, double const* __
 
 double conduction_balance(Conduction const& conduction, EnthalpyTable const& table, std::span<double const> enthalpy,
                           std::span<double const> integral, std::span<double> balance) {
-#pragma omp parallel for schedule(static)
-  for (std::size_t r = 0; r < conduction.rows.size(); ++r) {
-    bulk_balance(conduction, conduction.rows[r], integral.data(), balance.data());
-  }
+  for (Row const& row : conduction.rows) bulk_balance(conduction, row, integral.data(), balance.data());
   for (ContactFace const& face : conduction.contacts) {
     balance[face.cell] +=
         face.conductivity * (table.temperature(enthalpy[face.neighbour]) - table.temperature(enthalpy[face.cell]));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/compensated_sum.hpp"
 #include "core/error.hpp"
@@ -21,6 +20,8 @@ constexpr std::int64_t many_iterations = 12;
 /// Automatic choice: an implicit step costs about as much as this many explicit ones.
 constexpr double implicit_price = 2000;
 constexpr std::int64_t steps_between_checks = 50;
+/// Pools freeze within a millisecond; what is molten after this time has lost touch with the plate, and waits as it is.
+constexpr double longest_freezing = 2e-3;
 
 }  // namespace
 
@@ -60,7 +61,7 @@ void Exposure::heat(AbsorbedPower const& power, double duration, double begin) {
 
 void Exposure::rest(double duration, double begin) { relax(duration, begin, false); }
 
-double Exposure::freeze(double begin) { return relax(std::numeric_limits<double>::infinity(), begin, true); }
+double Exposure::freeze(double begin) { return relax(longest_freezing, begin, true); }
 
 double Exposure::relax(double duration, double begin, bool until_frozen) {
   double const price = implicit_price * stable_step_, solidus = system_.table.solidus();

@@ -52,19 +52,11 @@ void record_liquid(HeatSystem& system, Row const& row, double dt, std::vector<st
 
 void finish_step(HeatSystem& system, double dt) {
   system.grid.exchange(system.enthalpy);
-  std::vector<Row> const& rows = system.conduction.rows_with_neighbours;
   std::vector<std::int64_t> newly_melted;
-#pragma omp parallel
-  {
-    std::vector<std::int64_t> mine;
-#pragma omp for schedule(static)
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      double const largest =
-          look_up(system.table, rows[r], system.enthalpy.data(), system.integral.data(), system.peak.data());
-      if (largest >= system.table.liquidus()) record_liquid(system, rows[r], dt, mine);
-    }
-#pragma omp critical
-    newly_melted.insert(newly_melted.end(), mine.begin(), mine.end());
+  for (Row const& row : system.conduction.rows_with_neighbours) {
+    double const largest =
+        look_up(system.table, row, system.enthalpy.data(), system.integral.data(), system.peak.data());
+    if (largest >= system.table.liquidus()) record_liquid(system, row, dt, newly_melted);
   }
   for (std::int64_t c : newly_melted) {
     system.melted[c] = 1;
@@ -77,15 +69,12 @@ void explicit_step(HeatSystem& system, std::span<CellPower const> source, double
   double const far = conduction_balance(conduction, system.table, system.enthalpy, system.integral, system.balance);
   for (CellPower const& heated : source) system.balance[heated.cell] += heated.watts / conduction.cell;
   system.heat_to_far_field += dt * far;
-#pragma omp parallel for schedule(static)
-  for (std::size_t r = 0; r < conduction.rows.size(); ++r) {
-    double* const h = system.enthalpy.data();
-    double const* const balance = system.balance.data();
-    double const* const per_capacity = conduction.per_capacity.data();
+  double* const h = system.enthalpy.data();
+  double const* const balance = system.balance.data();
+  double const* const per_capacity = conduction.per_capacity.data();
+  for (Row const& row : conduction.rows) {
 #pragma omp simd
-    for (std::int64_t c = conduction.rows[r].begin; c < conduction.rows[r].end; ++c) {
-      h[c] += dt * per_capacity[c] * balance[c];
-    }
+    for (std::int64_t c = row.begin; c < row.end; ++c) h[c] += dt * per_capacity[c] * balance[c];
   }
   drain(system.sink, system.table, dt, system.enthalpy);
   finish_step(system, dt);

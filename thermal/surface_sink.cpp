@@ -49,9 +49,7 @@ void book(OpenCell& open, SurfaceSink::Flux const& flux, double energy) {
 }  // namespace
 
 void drain(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double> enthalpy) {
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < sink.cells.size(); ++i) {
-    OpenCell& open = sink.cells[i];
+  for (OpenCell& open : sink.cells) {
     double& h = enthalpy[static_cast<std::size_t>(open.cell)];
     auto flux = sink.flux(table, h);
     if (flux.total() == 0) continue;
