@@ -134,6 +134,14 @@ void Simulation::take_out_nipped() {
   nipped_ += take_out(nipped);
 }
 
+void Simulation::check_first_overlaps() {
+  double deepest = 0;
+  for_each_overlap(
+      [&](std::size_t, std::size_t, double overlap, std::string const*) { deepest = std::max(deepest, overlap); });
+  deepest = communicator_.max(deepest);
+  if (deepest > overlap_limit) fail(find_overlap(deepest));
+}
+
 void Simulation::fail(Fault const& own) {
   double const worst = communicator_.max(own.severity);
   bool const is_mine = own.severity == worst && !own.text.empty();

@@ -33,6 +33,10 @@ double gate_foot(MachineSettings const& machine, PowderBed const& bed) {
 }
 }  // namespace
 
+RoundedBlock parked_blade(MachineSettings const& machine) {
+  return block("the blade", -machine.blade_width, 0, machine.blade_clearance, height, machine.edge_radius);
+}
+
 double blade_stroke(MachineSettings const& machine) { return machine.deposition_end() + machine.blade_width; }
 
 Rig machine_rig(Case const& checked, TriangleSurface const& substrate, PowderBed const& bed, Tools tools) {
@@ -49,7 +53,7 @@ Rig machine_rig(Case const& checked, TriangleSurface const& substrate, PowderBed
       block("the end platform", m.deposition_end(), sink, bottom, 0, edge),
       block("the rear wall", left - beyond, left, bottom, 2 * height, 0)};
   if (tools != Tools::none) {
-    rig.walls.blocks.push_back(block("the blade", -m.blade_width, 0, m.blade_clearance, height, m.edge_radius));
+    rig.walls.blocks.push_back(parked_blade(m));
   }
   if (tools == Tools::moving_blade) rig.walls.blocks.back().velocity = m.recoating_speed;
   if (tools == Tools::blade_and_gate) {

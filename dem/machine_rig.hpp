@@ -14,6 +14,9 @@ inline constexpr double platform_edge_radius = 20e-6;
 /// From the blade's last position to where the end platform ends [m].
 inline constexpr double sink_distance = 100e-6;
 
+/// The blade where it waits, its front at x = 0.
+RoundedBlock parked_blade(MachineSettings const& machine);
+
 /// Distance that the blade travels: its front starts at x = 0, its rear edge ends at the end of the deposition zone
 /// [m].
 double blade_stroke(MachineSettings const& machine);

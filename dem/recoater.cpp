@@ -50,6 +50,17 @@ void count_overflow(PowderBed const& before, PowderBed const& after, SpreadOutco
   outcome.overflow_volume = volume.value();
 }
 
+/// Takes out what lies beside the zones, and what is in the way of the returning blade.
+void clear_platforms(PowderBed& bed, Case const& checked) {
+  RoundedBlock const blade = parked_blade(checked.machine);
+  std::vector<char> keep(bed.size());
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    bool const in_the_way = nearest(blade, 0, bed.x[i], bed.z[i]).distance < 0.99 * bed.radius[i];
+    keep[i] = bed.x[i] >= 0 && bed.x[i] <= checked.machine.deposition_end() && !in_the_way;
+  }
+  bed.retain(keep);
+}
+
 void note(SpreadOutcome& outcome, Simulation const& simulation) {
   outcome.steps += simulation.steps();
   outcome.nipped_grains += simulation.nipped();
@@ -89,15 +100,14 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   bed = stroke.gather();
   note(outcome, stroke);
 
-  std::vector<char> keep(bed.size());
-  for (std::size_t i = 0; i < bed.size(); ++i) keep[i] = bed.x[i] >= 0 && bed.x[i] <= machine.deposition_end();
-  bed.retain(keep);
+  clear_platforms(bed, checked);
   if (bed.size() == 0)
     throw PhysicsError("the blade swept every grain away (no layer is left) raise powder.particles or layer_thickness");
   Simulation rest(motion, machine_rig(checked, substrate, bed, Tools::none), communicator);
   rest.scatter(bed);
   settle(rest, longest_settling, "settle", show_progress && communicator.is_root());
   bed = rest.gather();
+  clear_platforms(bed, checked);
   note(outcome, rest);
   count_overflow(before, bed, outcome);
   return outcome;

@@ -70,6 +70,7 @@ void Simulation::scatter(PowderBed const& bed) {
   wall_contacts_ = {};
   if (Fault const lost = find_lost_grain(); communicator_.any(!lost.text.empty())) fail(lost);
   rebuild();
+  check_first_overlaps();
 }
 
 void Simulation::rebuild() {

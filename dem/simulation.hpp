@@ -102,6 +102,7 @@ class Simulation {
   /// Drops the owned grains whose flag is set. Collective. \return how many on all ranks
   std::int64_t take_out(std::vector<char> const& leaves);
   void take_out_nipped();
+  void check_first_overlaps();
   /// visit(row, other row, overlap over the smaller diameter, null or name of the wall) for every listed pair and wall.
   template <class Visit>
   void for_each_overlap(Visit const& visit) const;

@@ -89,6 +89,18 @@ TEST(Guards, DeepOverlapNamesBothGrains) {
   bed.add(1, {0, 50e-6, 0}, 10e-6, 0);
   bed.add(2, {18.5e-6, 50e-6, 0}, 10e-6, 0);  // 7.5 % of the diameter
   Simulation simulation(motion(plain_contact(), 10e-6), empty_space(), alone());
+  std::string const message = message_of([&] { simulation.scatter(bed); });
+  EXPECT_NE(message.find("grain 1 overlaps grain 2 by"), std::string::npos) << message;
+}
+
+TEST(Guards, OverlapThatGrowsIsCaught) {
+  ContactSettings contact = plain_contact();
+  contact.youngs_modulus = 2e5;  // so soft that a fast impact goes deep
+  PowderBed bed;
+  bed.add(1, {0, 50e-6, 0}, 10e-6, 0);
+  bed.add(2, {20.1e-6, 50e-6, 0}, 10e-6, 0);
+  bed.vx = {0.15, -0.15};
+  Simulation simulation(motion(contact, 10e-6), empty_space(), alone());
   simulation.scatter(bed);
   std::string const message = message_of([&] { simulation.advance(100); });
   EXPECT_NE(message.find("grain 1 overlaps grain 2 by"), std::string::npos) << message;
@@ -100,8 +112,7 @@ TEST(Guards, GrainThatIsBehindAMeshFaceIsNotAccepted) {
   PowderBed bed;
   bed.add(7, {0, 40e-6, -3e-6}, 10e-6, 0);
   Simulation simulation(motion(plain_contact(), 10e-6), rig, alone());
-  simulation.scatter(bed);
-  std::string const message = message_of([&] { simulation.advance(100); });
+  std::string const message = message_of([&] { simulation.scatter(bed); });
   EXPECT_NE(message.find("grain 7 overlaps the substrate"), std::string::npos) << message;
 }
 
