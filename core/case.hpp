@@ -98,6 +98,7 @@ struct HeatSettings {
 struct RunSettings {
   std::int64_t layers = 0;
   bool checkpoint = true;
+  bool pictures = true;
   bool unsafe_time_step = false;
 };
 

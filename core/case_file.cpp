@@ -147,7 +147,7 @@ class CaseReader {
       std::string const other = value.substr(1);
       std::size_t const dot = other.find('.');
       CaseKey const& source = *find_key(other.substr(0, dot), other.substr(dot + 1));
-      std::get<Field<double>>(row.target)(into) = std::get<Field<double>>(source.target)(into);
+      std::get<Member<double>>(row.target)(into) = std::get<Member<double>>(source.target)(into);
       if (unsound_.contains(other)) unsound_.insert(name_of(row));
     } else if (!value.empty()) {
       store(row, parse_value(value), into);

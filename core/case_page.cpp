@@ -14,13 +14,13 @@ std::string value_column(CaseKey const& row) {
     for (std::string const& word : choice->words) words += fmt::format("{}`\"{}\"`", words.empty() ? "" : ", ", word);
     return words;
   }
-  if (std::holds_alternative<Field<bool>>(row.target)) return "true, false";
-  if (std::holds_alternative<Field<std::string>>(row.target)) return "text";
-  bool const whole = std::holds_alternative<Field<std::int64_t>>(row.target) ||
-                     std::holds_alternative<Field<std::uint64_t>>(row.target);
+  if (std::holds_alternative<Member<bool>>(row.target)) return "true, false";
+  if (std::holds_alternative<Member<std::string>>(row.target)) return "text";
+  bool const whole = std::holds_alternative<Member<std::int64_t>>(row.target) ||
+                     std::holds_alternative<Member<std::uint64_t>>(row.target);
   std::string const unit(si_unit(row.dimension));
   std::string const kind = whole ? "whole number" : unit.empty() ? "number" : unit;
-  if (std::holds_alternative<Field<std::vector<double>>>(row.target)) return fmt::format("list, {}", kind);
+  if (std::holds_alternative<Member<std::vector<double>>>(row.target)) return fmt::format("list, {}", kind);
   return kind;
 }
 

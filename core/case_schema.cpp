@@ -196,6 +196,8 @@ std::vector<CaseKey> heat_and_run_rows() {
       {"run", "layers", at<run, &R::layers>, D::none, {1, 100000}, Need::never, "1", "Layers to build."},
       {"run", "checkpoint", at<run, &R::checkpoint>, D::none, {}, Need::never, "true",
        "Whether a checkpoint is written after each layer."},
+      {"run", "pictures", at<run, &R::pictures>, D::none, {}, Need::never, "true",
+       "Whether pictures of every layer are drawn for the report."},
       {"run", "unsafe_time_step", at<run, &R::unsafe_time_step>, D::none, {}, Need::never, "false",
        "Lets a run start with a time step above the stable limit; the guards then stop it."},
   };

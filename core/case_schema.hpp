@@ -31,7 +31,7 @@ enum class Need {
 };
 
 template <class T>
-using Field = std::function<T&(Case&)>;
+using Member = std::function<T&(Case&)>;
 
 /// A word out of a fixed list.
 struct Choice {
@@ -42,9 +42,9 @@ struct Choice {
 
 /// Where a key's value goes; its type says what may be written.
 using Target =
-    std::variant<Field<double>, Field<std::optional<double>>, Field<std::vector<double>>,
-                 Field<std::optional<std::array<double, 2>>>, Field<std::complex<double>>, Field<PropertyTable>,
-                 Field<std::int64_t>, Field<std::uint64_t>, Field<bool>, Field<std::string>, Choice>;
+    std::variant<Member<double>, Member<std::optional<double>>, Member<std::vector<double>>,
+                 Member<std::optional<std::array<double, 2>>>, Member<std::complex<double>>, Member<PropertyTable>,
+                 Member<std::int64_t>, Member<std::uint64_t>, Member<bool>, Member<std::string>, Choice>;
 
 /// One row of the schema: all there is to know about one key of the case file. Parsing, checking, the resolved case and
 /// the page of keys come from it, so a new key is one row here and one member in core/case.hpp.

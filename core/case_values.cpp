@@ -22,25 +22,25 @@ class Store {
  public:
   Store(CaseKey const& row, TomlValue const& value, Case& into) : row_(row), value_(value), into_(into) {}
 
-  void operator()(Field<double> const& field) const { field(into_) = number(value_); }
-  void operator()(Field<std::optional<double>> const& field) const { field(into_) = number(value_); }
-  void operator()(Field<std::vector<double>> const& field) const { field(into_) = numbers(); }
-  void operator()(Field<std::optional<std::array<double, 2>>> const& field) const { field(into_) = pair(value_); }
-  void operator()(Field<std::complex<double>> const& field) const {
+  void operator()(Member<double> const& field) const { field(into_) = number(value_); }
+  void operator()(Member<std::optional<double>> const& field) const { field(into_) = number(value_); }
+  void operator()(Member<std::vector<double>> const& field) const { field(into_) = numbers(); }
+  void operator()(Member<std::optional<std::array<double, 2>>> const& field) const { field(into_) = pair(value_); }
+  void operator()(Member<std::complex<double>> const& field) const {
     auto const [n, k] = pair(value_);
     field(into_) = {n, k};
   }
-  void operator()(Field<PropertyTable> const& field) const { field(into_) = property(); }
-  void operator()(Field<std::int64_t> const& field) const { field(into_) = whole_number(); }
-  void operator()(Field<std::uint64_t> const& field) const {
+  void operator()(Member<PropertyTable> const& field) const { field(into_) = property(); }
+  void operator()(Member<std::int64_t> const& field) const { field(into_) = whole_number(); }
+  void operator()(Member<std::uint64_t> const& field) const {
     field(into_) = static_cast<std::uint64_t>(whole_number());
   }
-  void operator()(Field<bool> const& field) const {
+  void operator()(Member<bool> const& field) const {
     bool const* const flag = std::get_if<bool>(&value_.content);
     if (!flag) refuse("must be true or false");
     field(into_) = *flag;
   }
-  void operator()(Field<std::string> const& field) const { field(into_) = text("must be text in quotation marks"); }
+  void operator()(Member<std::string> const& field) const { field(into_) = text("must be text in quotation marks"); }
   void operator()(Choice const& choice) const {
     std::string const demand = "must be one of " + in_quotes(choice.words);
     std::string const written = text(demand);
@@ -143,19 +143,19 @@ struct Show {
   Case& from;  // only read: fields reach members that can be written
 
   using Text = std::optional<std::string>;
-  Text operator()(Field<double> const& field) const { return fmt::format("{}", field(from)); }
-  Text operator()(Field<std::optional<double>> const& field) const {
+  Text operator()(Member<double> const& field) const { return fmt::format("{}", field(from)); }
+  Text operator()(Member<std::optional<double>> const& field) const {
     return field(from) ? Text(fmt::format("{}", *field(from))) : std::nullopt;
   }
-  Text operator()(Field<std::vector<double>> const& field) const { return listed(field(from)); }
-  Text operator()(Field<std::optional<std::array<double, 2>>> const& field) const {
+  Text operator()(Member<std::vector<double>> const& field) const { return listed(field(from)); }
+  Text operator()(Member<std::optional<std::array<double, 2>>> const& field) const {
     auto const& pair = field(from);
     return pair ? Text(listed({pair->front(), pair->back()})) : std::nullopt;
   }
-  Text operator()(Field<std::complex<double>> const& field) const {
+  Text operator()(Member<std::complex<double>> const& field) const {
     return listed({field(from).real(), field(from).imag()});
   }
-  Text operator()(Field<PropertyTable> const& field) const {
+  Text operator()(Member<PropertyTable> const& field) const {
     PropertyTable const& table = field(from);
     if (table.value.empty()) return std::nullopt;
     std::string points;
@@ -164,10 +164,10 @@ struct Show {
     }
     return "[" + points + "]";
   }
-  Text operator()(Field<std::int64_t> const& field) const { return fmt::format("{}", field(from)); }
-  Text operator()(Field<std::uint64_t> const& field) const { return fmt::format("{}", field(from)); }
-  Text operator()(Field<bool> const& field) const { return field(from) ? "true" : "false"; }
-  Text operator()(Field<std::string> const& field) const { return toml_text(field(from)); }
+  Text operator()(Member<std::int64_t> const& field) const { return fmt::format("{}", field(from)); }
+  Text operator()(Member<std::uint64_t> const& field) const { return fmt::format("{}", field(from)); }
+  Text operator()(Member<bool> const& field) const { return field(from) ? "true" : "false"; }
+  Text operator()(Member<std::string> const& field) const { return toml_text(field(from)); }
   Text operator()(Choice const& choice) const { return toml_text(choice.words.at(choice.get(from))); }
 };
 

@@ -67,10 +67,7 @@ BuildState read_state(Hdf5Reader const& file) {
   state.solid.grid.cell = lengths.at(3);
   state.solid.mass = file.read_doubles("solid/mass");
   state.bed = read_bed_group(file);
-  std::vector<double> const corners = file.read_doubles("substrate/vertices");
-  for (std::size_t v = 0; v + 2 < corners.size(); v += 3) state.substrate.vertices.emplace_back(corners[v], corners[v + 1], corners[v + 2]);
-  std::vector<std::int32_t> const triangles = file.read_int32("substrate/triangles");
-  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) state.substrate.triangles.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
+  state.substrate = read_surface_group(file);
   state.record = nlohmann::json::parse(read_text(file, "record")).get<RunRecord>();
   return state;
 }
@@ -87,12 +84,7 @@ void save_checkpoint(fs::path const& folder, BuildState const& state, std::strin
   file.write("state/lengths", std::span<double const>(lengths), {lengths.size()}, "m");
   file.write("solid/mass", std::span<double const>(state.solid.mass), {state.solid.mass.size()}, "kg");
   write_bed_group(file, state.bed);
-  std::vector<double> corners;
-  for (Vec3 const& v : state.substrate.vertices) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
-  std::vector<std::int32_t> triangles;
-  for (auto const& t : state.substrate.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-  file.write("substrate/vertices", std::span<double const>(corners), {corners.size() / 3, 3}, "m");
-  file.write("substrate/triangles", std::span<std::int32_t const>(triangles), {triangles.size() / 3, 3});
+  write_surface_group(file, state.substrate);
   write_text(file, "record", nlohmann::json(state.record).dump());
   write_text(file, "case", case_text);
   file.commit();

@@ -64,6 +64,7 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   dem::LayerBase const before = dem::layer_base(build.bed, base, run.checked);
   dem::SpreadOutcome const sweep = dem::spread(build.bed, run.checked, build.substrate, run.comm, run.show_progress());
   layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
+  for (LayerBin const& bin : layer.metrics.bins) layer.grains_in_layer += bin.grains;
   layer.blade_note = sweep.blade_note;
 
   Ledger& ledger = build.record.ledger;
@@ -128,13 +129,14 @@ void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
   ledger.particles_melted += layer.consolidation.grains_melted;
   ledger.particles_trapped += layer.consolidation.grains_trapped;
   ledger.mass_melted += layer.consolidation.melted_mass;
+  ledger.surface_height_correction += layer.consolidation.surface_height_correction;
 }
 
 /// One layer, as the machine makes it.
 void build_layer(Run const& run, BuildState& build) {
   LayerRecord layer;
   layer.layer = ++build.layers_done;
-  if (layer.layer > 1) lower(run, build);  // the plate begins one layer below the blade
+  lower(run, build);
   dose(run, build);
   spread(run, build, layer);
   consolidate(run, build, layer);

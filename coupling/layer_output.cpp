@@ -41,12 +41,12 @@ LayerOutput::LayerOutput(Case const& checked, fs::path folder, Communicator cons
 }
 
 void LayerOutput::picture(raytrace::BedScene const& scene, PowderBed const& bed, View view, LayerRecord& layer) const {
-  if (!writes_) return;
+  if (!writes_ || !checked_.run.pictures) return;
   MachineSettings const& machine = checked_.machine;
   Vec3 const lower(machine.deposition_begin(), 0, -1.5 * machine.layer_thickness);
   Vec3 const upper(machine.deposition_end(), machine.width, 0.5 * machine.layer_thickness);
   bool const whole = view == View::whole_machine;
-  raytrace::RenderSettings const size{.width = 1200, .height = whole ? 420 : 640};
+  raytrace::RenderSettings const size{.width = 960, .height = whole ? 340 : 520};
   double const aspect = static_cast<double>(size.width) / size.height;
   auto const direction = view == View::from_above ? raytrace::from_above : raytrace::oblique;
   raytrace::Camera const camera = whole ? raytrace::fit_camera(scene.lower(), scene.upper(), direction, aspect)

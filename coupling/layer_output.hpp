@@ -20,7 +20,7 @@ class LayerOutput {
   /// Makes the folder, writes case_resolved.toml. \throws FileError
   LayerOutput(Case const& checked, std::filesystem::path folder, Communicator const& comm);
 
-  /// A picture of the scene; its name and caption go into the record of the layer.
+  /// A picture of the scene, unless run.pictures is off; its name and caption go into the record of the layer.
   void picture(raytrace::BedScene const& scene, PowderBed const& bed, View view, LayerRecord& layer) const;
 
   /// heat_NNNN.h5

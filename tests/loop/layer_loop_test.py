@@ -159,8 +159,8 @@ class LayerLoop(unittest.TestCase):
             self.assertIn("time_step_fraction", done.stderr)
 
     def test_blade_against_raised_solid_stops_or_is_reported(self):
-        # Blade 40 um below the platforms: it would cut into what layer 1 left on the plate.
-        case = ("--set", "machine.blade_clearance=0 um", "--set", "machine.layer_thickness=22 um", "--set", "machine.frozen_zone=[2.5e-4, 3.5e-4]")
+        # Frozen grains of 28 um under a plate that goes down by 22 um a layer stand in the way of the next stroke.
+        case = ("--set", "machine.layer_thickness=22 um", "--set", "machine.frozen_zone=[2.5e-4, 3.5e-4]")
         done = layerloop("run", CASE, "-o", self.folder / "raised", "--quiet", *case)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("blade", done.stderr)
