@@ -149,73 +149,95 @@ void append_springs(PairContacts const& pairs, Grains const& grains, std::vector
   }
 }
 
-double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw const& law, double period, double dt,
-                      std::size_t from, std::size_t to) {
-  double const* __restrict x = grains.x.data();
-  double const* __restrict y = grains.y.data();
-  double const* __restrict z = grains.z.data();
-  double const* __restrict vx = grains.vx.data(), * __restrict vy = grains.vy.data(), * __restrict vz = grains.vz.data();
-  double const* __restrict wx = grains.wx.data(), * __restrict wy = grains.wy.data(), * __restrict wz = grains.wz.data();
-  double const* __restrict radius = grains.radius.data();
+namespace {
+
+/// Pairs [start, start + count) that touch, in order; gives each its row of actions.
+/// \param contact  room for `count` pairs
+/// \return number of touching pairs
+std::int32_t find_touching(PairContacts& pairs, Grains const& grains, double period, std::int32_t start,
+                           std::int32_t count, std::int32_t* __restrict touches, std::int32_t* __restrict contact) {
+  double const* __restrict x = grains.x.data(), * __restrict y = grains.y.data(), * __restrict z = grains.z.data();
   std::int32_t const* __restrict first = pairs.first.data(), * __restrict second = pairs.second.data();
   double const* __restrict radius_sum = pairs.radius_sum.data();
-  double const* __restrict reduced_radius = pairs.reduced_radius.data();
-  double const* __restrict reduced_mass = pairs.reduced_mass.data();
-  double const* __restrict inverse_diameter = pairs.inverse_diameter.data();
+  std::int32_t* __restrict action = pairs.action.data();
+  double const half = 0.5 * period;
+#pragma omp simd
+  for (std::int32_t l = 0; l < count; ++l) {
+    std::int32_t const k = start + l, i = first[k], j = second[k];
+    double const dx = x[i] - x[j], dz = z[i] - z[j];
+    double dy = y[i] - y[j];
+    dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
+    touches[l] = dx * dx + dy * dy + dz * dz < radius_sum[k] * radius_sum[k] ? -1 : 0;
+  }
+  std::int32_t contacts = 0;
+  for (std::int32_t l = 0; l < count; ++l) {  // no branch: which pairs touch cannot be predicted
+    contact[contacts] = start + l;
+    action[start + l] = touches[l] & (start + 1 + contacts);
+    contacts -= touches[l];
+  }
+  return contacts;
+}
+
+/// Forces of the listed pairs, all at once.
+/// \return largest overlap over the smaller grain's diameter
+double act_on(PairContacts& pairs, Grains const& g, ContactLaw const law, double period, double dt,
+              std::int32_t const* __restrict contact, std::int32_t contacts, PairAction* __restrict action) {
+  double const* __restrict x = g.x.data(), * __restrict y = g.y.data(), * __restrict z = g.z.data();
+  double const* __restrict vx = g.vx.data(), * __restrict vy = g.vy.data(), * __restrict vz = g.vz.data();
+  double const* __restrict wx = g.wx.data(), * __restrict wy = g.wy.data(), * __restrict wz = g.wz.data();
+  double const* __restrict radius = g.radius.data();
+  std::int32_t const* __restrict first = pairs.first.data(), * __restrict second = pairs.second.data();
+  double const* __restrict radius_sum = pairs.radius_sum.data(), * __restrict reduced_radius =
+                                                                     pairs.reduced_radius.data();
+  double const* __restrict reduced_mass = pairs.reduced_mass.data(), * __restrict inverse_diameter =
+                                                                         pairs.inverse_diameter.data();
   double *__restrict spring_x = pairs.spring_x.data(), *__restrict spring_y = pairs.spring_y.data(),
          *__restrict spring_z = pairs.spring_z.data();
-  std::int32_t* __restrict touching = pairs.touching.data(), * __restrict action_of = pairs.action.data();
+  std::int32_t const* __restrict touching = pairs.touching.data();
   double const half = 0.5 * period;
-  ContactLaw const law_here = law;
   double worst = 0;
-
-  for (std::size_t at = from; at < to; at += block) {
-    auto const count = static_cast<std::int32_t>(std::min(block, to - at));
-    auto const start = static_cast<std::int32_t>(at);
-    alignas(64) std::int32_t touches[block];  // -1: yes, 0: no
-    alignas(64) std::int32_t contact[block];  // the pairs that touch
-#pragma omp simd
-    for (std::int32_t l = 0; l < count; ++l) {
-      std::int32_t const k = start + l, i = first[k], j = second[k];
-      double const dx = x[i] - x[j], dz = z[i] - z[j];
-      double dy = y[i] - y[j];
-      dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
-      touches[l] = dx * dx + dy * dy + dz * dz < radius_sum[k] * radius_sum[k] ? -1 : 0;
-    }
-    std::int32_t contacts = 0;
-    for (std::int32_t l = 0; l < count; ++l) {
-      contact[contacts] = start + l;
-      action_of[start + l] = touches[l] & (start + 1 + contacts);
-      contacts -= touches[l];
-    }
-    PairAction* __restrict action = pairs.actions.data() + start + 1;
 #pragma omp simd reduction(max : worst)
-    for (std::int32_t l = 0; l < contacts; ++l) {
-      std::int32_t const k = contact[l], i = first[k], j = second[k];
-      double const dx = x[i] - x[j], dz = z[i] - z[j];
-      double dy = y[i] - y[j];
-      dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
-      double const distance = std::sqrt(dx * dx + dy * dy + dz * dz), inverse = 1 / distance;
-      double const overlap = radius_sum[k] - distance;
-      double const arm_i = radius[i] - 0.5 * overlap, arm_j = radius[j] - 0.5 * overlap;
-      bool const had = touching[k] != 0;
-      ContactAction const a =
-          act(law_here,
-              {overlap, reduced_radius[k], reduced_mass[k], dx * inverse, dy * inverse, dz * inverse, vx[i] - vx[j],
-               vy[i] - vy[j], vz[i] - vz[j], arm_i * wx[i] + arm_j * wx[j], arm_i * wy[i] + arm_j * wy[j],
-               arm_i * wz[i] + arm_j * wz[j], wx[i] - wx[j], wy[i] - wy[j], wz[i] - wz[j], had ? spring_x[k] : 0.0,
-               had ? spring_y[k] : 0.0, had ? spring_z[k] : 0.0},
-              dt);
-      spring_x[k] = a.spring_x;
-      spring_y[k] = a.spring_y;
-      spring_z[k] = a.spring_z;
-      action[l].force = {a.fx, a.fy, a.fz, 0.0};
-      action[l].torque_first = {-arm_i * a.qx - a.rx, -arm_i * a.qy - a.ry, -arm_i * a.qz - a.rz, 0.0};
-      action[l].torque_second = {a.rx - arm_j * a.qx, a.ry - arm_j * a.qy, a.rz - arm_j * a.qz, 0.0};
-      double const relative = overlap * inverse_diameter[k];
-      worst = relative > worst ? relative : worst;
-    }
-    for (std::int32_t l = 0; l < count; ++l) touching[start + l] = touches[l];
+  for (std::int32_t l = 0; l < contacts; ++l) {
+    std::int32_t const k = contact[l], i = first[k], j = second[k];
+    double const dx = x[i] - x[j], dz = z[i] - z[j];
+    double dy = y[i] - y[j];
+    dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
+    double const distance = std::sqrt(dx * dx + dy * dy + dz * dz), inverse = 1 / distance;
+    double const overlap = radius_sum[k] - distance;
+    double const arm_i = radius[i] - 0.5 * overlap, arm_j = radius[j] - 0.5 * overlap;
+    bool const had = touching[k] != 0;
+    ContactAction const a =
+        act(law,
+            {overlap, reduced_radius[k], reduced_mass[k], dx * inverse, dy * inverse, dz * inverse, vx[i] - vx[j],
+             vy[i] - vy[j], vz[i] - vz[j], arm_i * wx[i] + arm_j * wx[j], arm_i * wy[i] + arm_j * wy[j],
+             arm_i * wz[i] + arm_j * wz[j], wx[i] - wx[j], wy[i] - wy[j], wz[i] - wz[j], had ? spring_x[k] : 0.0,
+             had ? spring_y[k] : 0.0, had ? spring_z[k] : 0.0},
+            dt);
+    spring_x[k] = a.spring_x;
+    spring_y[k] = a.spring_y;
+    spring_z[k] = a.spring_z;
+    action[l].force = {a.fx, a.fy, a.fz, 0.0};
+    action[l].torque_first = {-arm_i * a.qx - a.rx, -arm_i * a.qy - a.ry, -arm_i * a.qz - a.rz, 0.0};
+    action[l].torque_second = {a.rx - arm_j * a.qx, a.ry - arm_j * a.qy, a.rz - arm_j * a.qz, 0.0};
+    double const relative = overlap * inverse_diameter[k];
+    worst = relative > worst ? relative : worst;
+  }
+  return worst;
+}
+
+}  // namespace
+
+double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw const& law, double period, double dt,
+                      std::size_t from, std::size_t to) {
+  alignas(64) std::int32_t touches[block];  // -1: yes, 0: no
+  alignas(64) std::int32_t contact[block];
+  double worst = 0;
+  for (std::size_t at = from; at < to; at += block) {
+    auto const start = static_cast<std::int32_t>(at), count = static_cast<std::int32_t>(std::min(block, to - at));
+    std::int32_t const contacts = find_touching(pairs, grains, period, start, count, touches, contact);
+    worst =
+        std::max(worst, act_on(pairs, grains, law, period, dt, contact, contacts, pairs.actions.data() + start + 1));
+    std::copy_n(touches, count, pairs.touching.begin() + start);
   }
   return worst;
 }
