@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/progress.hpp"
 #include "thermal/effects/latent_heat.hpp"
 #include "thermal/effects/variable_conductivity.hpp"
 #include "thermal/exposure.hpp"
@@ -27,7 +28,9 @@ void check(HeatSource const& source, VoxelGrid const& grid) {
   }
 }
 
-/// Highest temperature that the model is trusted with [K].
+/// Highest temperature that the model is trusted with [K]. With evaporation a surface under 2e10 W/m^2 settles 1500 K
+/// above boiling, because the melt of this model cannot flow away from under its own vapour; beyond 2000 K something is
+/// wrong.
 double hottest_allowed(Material const& material, bool evaporation) {
   return evaporation ? material.boiling_point + 2000 : 1.5 * material.boiling_point;
 }

@@ -38,10 +38,9 @@ enum class Report { progress, silent };
 /// steps.
 ///
 /// \throws InputError    arrays and times that do not fit, a track that does not run along x (before any computing)
-/// \throws PhysicsError  NaN, a temperature beyond the model, heat that does not balance to 1e-9
-/// \throws StoppedBySignal
-/// \note Collective. Explicit steps give the same bits for any number of ranks; implicit ones agree to the
-/// solver's tolerance, 1e-12.
+/// \throws PhysicsError  NaN; metal above 1.5 boiling points, or with evaporation 2000 K above it; heat that does not
+/// balance to 1e-9 \throws StoppedBySignal \note Collective. Explicit steps give the same bits for any number of ranks;
+/// implicit ones agree to the solver's tolerance, 1e-12.
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
                    HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
                    Report report);

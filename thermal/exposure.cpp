@@ -6,6 +6,7 @@
 
 #include "core/compensated_sum.hpp"
 #include "core/error.hpp"
+#include "core/progress.hpp"
 
 namespace layerloop::thermal {
 namespace {

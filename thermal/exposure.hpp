@@ -1,9 +1,7 @@
 #pragma once
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "core/progress.hpp"
 #include "thermal/expose.hpp"
 #include "thermal/heat_system.hpp"
 #include "thermal/implicit_solver.hpp"

@@ -86,7 +86,7 @@ std::optional<PoolSize> measure_section(HeatCells const& cells, std::span<float 
     left = std::min(left, j - reach(T, plane.at(j - 1, k), isotherm));
     right = std::max(right, j + reach(T, plane.at(j + 1, k), isotherm));
     bottom = std::min(bottom, k + 0.5 - reach(T, plane.at(j, k - 1), isotherm));
-    if (counted[static_cast<std::size_t>(j)]++) continue;
+    if (counted[static_cast<std::size_t>(j)]) continue;
     counted[static_cast<std::size_t>(j)] = 1;
     surface += plane.surface[static_cast<std::size_t>(j)];
     ++columns;

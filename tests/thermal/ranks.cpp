@@ -1,4 +1,4 @@
-// Run under mpiexec: every rank computes the case alone, then all of them compute it together, and both are compared.
+// Run under mpiexec: all ranks compute the case together, then the root computes it alone, and both are compared.
 #include <cmath>
 #include <cstdio>
 
@@ -11,12 +11,12 @@ using namespace layerloop;
 using namespace layerloop::thermal;
 
 HeatOutcome run(HeatSolver solver, MPI_Comm comm) {
-  CellContent const content = plate_with_grains({24, 16, 14}, 8);
+  CellContent const content = plate_with_grains({20, 14, 12}, 6);
   HeatSettings settings = closed_settings(5e-6);
   settings.margin = settings.substrate_depth = 40e-6;
   settings.solver = solver;
   Communicator const ranks(comm);
-  return expose(content, beam_from_above(content, 20, 30e-6, 1.0, 30e-6, 90e-6), built_in_materials().at("IN718"),
+  return expose(content, beam_from_above(content, 20, 30e-6, 1.0, 30e-6, 70e-6), built_in_materials().at("IN718"),
                 settings, effects_on({"latent_heat", "variable_conductivity", "evaporation", "surface_losses"}),
                 SideY::periodic, ranks, Report::silent);
 }
@@ -46,14 +46,17 @@ int main(int argc, char** argv) {
     PetscSession const petsc;
     Communicator const world;
     for (HeatSolver const solver : {HeatSolver::explicit_steps, HeatSolver::implicit_steps}) {
-      HeatOutcome const alone = run(solver, MPI_COMM_SELF), together = run(solver, MPI_COMM_WORLD);
-      bool const fine = !world.any(!same(together, alone, solver)) && alone.melt.pool.width > 0;
+      HeatOutcome const together = run(solver, MPI_COMM_WORLD);
+      bool fine = true;
       if (world.is_root()) {
+        HeatOutcome const alone = run(solver, MPI_COMM_SELF);
+        fine = same(together, alone, solver) && alone.melt.pool.width > 0;
         std::printf("%s on %d ranks: %s (stored %.17g, alone %.17g; out %.17g, alone %.17g)\n",
                     solver == HeatSolver::explicit_steps ? "explicit" : "implicit", world.size(),
                     fine ? "same" : "DIFFERENT", together.heat_stored, alone.heat_stored, together.heat_out,
                     alone.heat_out);
       }
+      fine = !world.any(!fine);
       ok = ok && fine;
     }
   }
