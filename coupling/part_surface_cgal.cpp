@@ -16,6 +16,9 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 #include <CGAL/facets_in_complex_3_to_triangle_mesh.h>
+#include <CGAL/Mesh_3/Dump_c3t3.h>
+// Mesh_3 leaves a dump in the current folder before it throws; what it throws is dealt with here.
+#define dump_c3t3(...) ((void)0)
 #include <CGAL/make_mesh_3.h>
 #include <CGAL/refine_mesh_3.h>
 #include <fmt/format.h>
@@ -151,7 +154,7 @@ std::vector<std::vector<Point>> slab_edges(Slab const& slab) {
 }
 
 /// Points on the surface, on the axes of uneven columns, so that refinement overlooks no islet.
-std::vector<Point> seeds(SurfaceLevel const& level, Unevenness const& uneven) {
+std::vector<Point> seeds(SurfaceLevel const& level, Unevenness const& uneven, double threshold) {
   std::vector<Point> points;
   for (std::int64_t j = level.first[1] + 1; j + 1 < level.first[1] + level.n[1]; ++j) {
     for (std::int64_t i = level.first[0] + 1; i + 1 < level.first[0] + level.n[0]; ++i) {
@@ -159,18 +162,20 @@ std::vector<Point> seeds(SurfaceLevel const& level, Unevenness const& uneven) {
       if ((i + j) % 2 != 0 || uneven.at(x, y) > 0) continue;
       for (std::int64_t k = level.first[2]; k + 1 < level.first[2] + level.n[2]; ++k) {
         double const below = level.at(i, j, k), above = level.at(i, j, k + 1);
-        if ((below >= 0.5) == (above >= 0.5)) continue;
-        points.emplace_back(x, y, static_cast<double>(k) + 0.5 + (below - 0.5) / (below - above));
+        if ((below >= threshold) == (above >= threshold)) continue;
+        points.emplace_back(x, y, static_cast<double>(k) + 0.5 + (below - threshold) / (below - above));
       }
     }
   }
   return points;
 }
 
-Mesh refine(SurfaceLevel const& level, Slab const& slab) {
+/// \param threshold  fill at which metal begins: a half, or a little off to get round a degenerate arrangement
+/// \throws CGAL::Failure_exception in degenerate arrangements (a point to insert that is there already)
+Mesh refine(SurfaceLevel const& level, Slab const& slab, double threshold) {
   auto const inside = [&](Point const& p) {
     Vec3 const q(p.x(), p.y(), p.z());
-    return slab.contains(q) && level(q) >= 0.5 ? 1 : 0;
+    return slab.contains(q) && level(q) >= threshold ? 1 : 0;
   };
   double const height = static_cast<double>(level.n[2]) + 4;
   CGAL::Bbox_3 const box(slab.lower.x() - 4, slab.lower.y() - 4, slab.lower.z() - 4, slab.upper.x() + 4,
@@ -187,7 +192,7 @@ Mesh refine(SurfaceLevel const& level, Slab const& slab) {
   Criteria const fine(p::edge_size = crease_spacing, p::facet_angle = facet_angle, p::facet_size = FacetSize{&uneven},
                       p::facet_distance = facet_distance);
   Complex complex = CGAL::make_mesh_3<Complex>(domain, coarse, p::no_perturb(), p::no_exude(), p::manifold());
-  for (Point const& seed : seeds(level, uneven)) {
+  for (Point const& seed : seeds(level, uneven, threshold)) {
     auto const vertex = complex.triangulation().insert(Triangulation::Weighted_point(seed));
     if (vertex == Complex::Vertex_handle()) continue;
     complex.set_dimension(vertex, 2);
@@ -271,12 +276,19 @@ Mesh wrap(Mesh const& mesh) {
 }
 
 Mesh sound_mesh(SurfaceLevel const& level, Slab const& slab) {
-  Mesh mesh = refine(level, slab);
-  snap_to_slab(mesh, slab);
-  if (!mesh.is_empty() && CGAL::is_closed(mesh) && !PMP::is_outward_oriented(mesh)) PMP::orient_to_bound_a_volume(mesh);
-  if (is_sound(mesh)) return mesh;
-  mesh = wrap(mesh);
-  if (is_sound(mesh)) return mesh;
+  for (double const threshold : {0.5, 0.497, 0.503, 0.494}) {  // moves the surface by a few thousandths of a cell
+    try {
+      Mesh mesh = refine(level, slab, threshold);
+      snap_to_slab(mesh, slab);
+      if (!mesh.is_empty() && CGAL::is_closed(mesh) && !PMP::is_outward_oriented(mesh))
+        PMP::orient_to_bound_a_volume(mesh);
+      if (is_sound(mesh)) return mesh;
+      mesh = wrap(mesh);
+      if (is_sound(mesh)) return mesh;
+    } catch (CGAL::Failure_exception const&) {
+      // degenerate at this threshold; the next one is not
+    }
+  }
   throw PhysicsError(
       "the solidified part has no closed surface free of self-intersection (its shape is finer than the cells) "
       "use smaller heat.cell_size");

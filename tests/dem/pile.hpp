@@ -16,7 +16,7 @@ struct Pile {
   explicit Pile(std::int64_t grains) {
     checked.machine.accumulation_length = 150e-6 + 0.2e-6 * static_cast<double>(grains);
     add_cloud(bed, checked, grains, 0);
-    rig.gravity = {0, 0, -400};  // settles in thousands of steps instead of hundreds of thousands
+    rig.gravity = {0, 0, -800};  // settles in thousands of steps instead of hundreds of thousands
     rig.width = checked.machine.width;
     rig.walls.blocks = {{"floor", -500e-6, 200e-6, -1e-3, -60e-6, 10e-6, 0},
                         {"pusher", -90e-6, -20e-6, -59e-6, 1e-3, 5e-6, 0.05}};
