@@ -6,12 +6,14 @@
 #include "core/case_file.hpp"
 #include "core/communicator.hpp"
 #include "coupling/cost.hpp"
+#include "coupling/solid_on_plate.hpp"
 
 namespace layerloop::apps {
 namespace {
 
 void check(CaseOptions const& from) {
   Case const checked = read_case(from);
+  coupling::solid_on_plate(checked);  // refuses a damaged substrate
   if (!Communicator{}.is_root()) return;
   coupling::Cost const cost = coupling::estimate_cost(checked);
   fmt::print(

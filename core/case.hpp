@@ -53,6 +53,7 @@ struct MachineSettings {
   double width = 0;                 ///< periodic, across the blade
   double blade_width = 0, edge_radius = 0, blade_clearance = 0;
   BladeCollision blade_collision = BladeCollision::stop;
+  std::string substrate;            ///< STL of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
   std::optional<std::array<double, 2>> frozen_zone;  ///< x from, to: freeze and mesh this part of the bed instead of the laser
 
   double deposition_begin() const { return accumulation_length + gap_length; }

@@ -121,6 +121,8 @@ std::vector<CaseKey> machine_rows() {
       {"machine", "blade_collision", choice<machine, &M::blade_collision>({"stop", "report"}),
        D::none, {}, Need::never, "\"stop\"",
        "What happens when raised solid is in the blade's way."},
+      {"machine", "substrate", at<machine, &M::substrate>, D::none, {}, Need::never, "\"\"",
+       "STL file (metres) of metal that is on the plate before layer 1: x and y of the machine, z from the plate's top."},
       {"machine", "frozen_zone", at<machine, &M::frozen_zone>, D::length, {0, 0.1}, Need::never, "",
        "[from, to] along x: freeze this part of each layer and mesh its surface, instead of a laser."},
   };

@@ -18,6 +18,7 @@
 #include "coupling/melt_section.hpp"
 #include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
+#include "coupling/solid_on_plate.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/surface_level.hpp"
 #include "coupling/transfer.hpp"
@@ -66,6 +67,7 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
   for (LayerBin const& bin : layer.metrics.bins) layer.grains_in_layer += bin.grains;
   layer.blade_note = sweep.blade_note;
+  layer.grains_nipped = sweep.nipped_grains;
 
   Ledger& ledger = build.record.ledger;
   ledger.particles_overflow += sweep.overflow_grains;
@@ -144,23 +146,24 @@ void build_layer(Run const& run, BuildState& build) {
   audit(build, run.checked);
 }
 
-BuildState first_state(Run const& run) {
-  std::string skipped;
-  if (run.options.resume) {
-    std::optional<BuildState> found = load_newest_checkpoint(run.options.folder, resolved_toml(run.checked), skipped);
+BuildState first_state(Case const& checked, RunOptions const& options, Communicator const& comm) {
+  if (options.resume) {
+    std::string skipped;
+    std::optional<BuildState> found = load_newest_checkpoint(options.folder, resolved_toml(checked), skipped);
+    if (!skipped.empty() && comm.is_root()) fmt::print(stderr, "{}\n", skipped);
     if (found) return *found;
   }
   BuildState build;
-  build.solid = empty_solid(run.checked);
-  build.substrate = mesh_solid(build.solid, run.checked);
+  build.solid = solid_on_plate(checked);
+  build.substrate = mesh_solid(build.solid, checked);
   return build;
 }
 
 }  // namespace
 
 RunRecord run_layer_loop(Case const& checked, RunOptions const& options, Communicator const& comm) {
+  BuildState build = first_state(checked, options, comm);  // refuses bad input before anything is written
   Run const run{checked, options, comm, LayerOutput(checked, options.folder, comm)};
-  BuildState build = first_state(run);
   while (build.layers_done < checked.run.layers) {
     {
       Stopwatch const timed(build.record.wall_time.total);

@@ -55,7 +55,7 @@ void LayerOutput::picture(raytrace::BedScene const& scene, PowderBed const& bed,
   paint.grains = colour_by_size(bed);
   auto const [name, caption] = [&]() -> std::array<std::string, 2> {
     switch (view) {
-      case View::whole_machine: return {"machine", "Reservoir, layer and overflow after the sweep; coloured by grain size"};
+      case View::whole_machine: return {"machine", "Reservoir and layer after the sweep; coloured by grain size"};
       case View::oblique: return {"layer", "The layer as the laser sees it: the scene that was traced, coloured by grain size"};
       case View::from_above: return {"layer_top", "The same scene from above"};
       case View::part: return {"part", "After the exposure: the part and the grains that stayed whole"};

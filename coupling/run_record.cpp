@@ -92,6 +92,7 @@ template <class Visit>
 void members(Of<LayerRecord> auto& layer, Visit&& visit) {
   visit("layer", layer.layer);
   visit("grains_in_layer", layer.grains_in_layer);
+  visit("grains_nipped", layer.grains_nipped);
   visit("metrics", layer.metrics);
   visit("blade_note", layer.blade_note);
   visit("absorptivity", layer.absorptivity);
@@ -225,6 +226,7 @@ json layer_summary(LayerRecord const& layer, bool laser) {
   entry.erase("surface");
   entry["layer"] = layer.layer;
   entry["grains_in_layer"] = layer.grains_in_layer;
+  entry["grains_nipped"] = layer.grains_nipped;
   if (!layer.blade_note.empty()) entry["blade_note"] = layer.blade_note;
   if (laser) add_laser_keys(entry, layer);
   Consolidation const& part = layer.consolidation;
@@ -272,6 +274,9 @@ std::map<std::string, std::string> definitions(ReportExtras const& extras) {
       {"peak_temperature", "highest temperature that any cell reached"},
       {"part_relative_density", "metal over metal and enclosed voids of the part so far, the plate left out"},
       {"grains_trapped", "melted by half or more, but enclosed in the part as whole grains"},
+      {"grains_nipped",
+       "grains caught between the rigid blade and an edge (overlap above 2 % of the diameter), taken out and booked as "
+       "overflow"},
       {"grains_moved", "grains that were moved clear of the new surface"},
       {"surface_height_correction", "mean change of the surface by levelling of the melt and resettling of grains"},
   };

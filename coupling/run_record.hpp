@@ -50,6 +50,7 @@ struct Consolidation {
 struct LayerRecord {
   std::int32_t layer = 0;  ///< 1-based
   std::int64_t grains_in_layer = 0;
+  std::int64_t grains_nipped = 0;  ///< of the overflow: caught between the moving blade and an edge, and taken out
   LayerMetrics metrics;
   std::string blade_note;  ///< empty, or what the blade would have touched
   double absorptivity = 0, absorptivity_standard_error = 0, mean_bounces = 0;

@@ -46,6 +46,7 @@ struct Row {
 std::vector<Row> powder_rows() {
   using L = LayerRecord const&;
   return {{"grains in the layer", "", [](L l) { return count(l.grains_in_layer); }},
+          {"grains nipped by the blade", "", [](L l) { return count(l.grains_nipped); }},
           {"effective thickness", "&micro;m", [](L l) { return um(l.metrics.effective_thickness); }},
           {"real effective thickness", "&micro;m", [](L l) { return um(l.metrics.real_effective_thickness); }},
           {"void layer", "&micro;m", [](L l) { return um(l.metrics.void_layer); }},

@@ -43,7 +43,7 @@ TEST(CaseFile, ExampleIsReadInSi) {
   EXPECT_EQ(c.machine.layer_thickness, 60e-6);
   EXPECT_EQ(c.machine.deposition_begin(), 510e-6);
   EXPECT_EQ(c.laser.wavelength, 1070e-9);
-  EXPECT_EQ(c.laser.spot_radius(), 40e-6);
+  EXPECT_EQ(c.laser.spot_radius(), 50e-6);
   EXPECT_EQ(c.scan.tracks, 3);
   EXPECT_EQ(c.run.layers, 2);
   EXPECT_TRUE(c.effect_enabled("evaporation"));

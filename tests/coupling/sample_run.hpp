@@ -56,6 +56,7 @@ inline LayerRecord sample_layer(std::int32_t n) {
   LayerRecord layer;
   layer.layer = n;
   layer.grains_in_layer = 3;
+  layer.grains_nipped = 1;
   layer.metrics.effective_thickness = 21e-6;
   layer.metrics.bins = {{110e-6, 0.5, 20e-6, 21e-6, 2}, {190e-6, 0.4, 18e-6, 0, 0}};
   AreaMap const map{

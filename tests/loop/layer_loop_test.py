@@ -62,6 +62,21 @@ class LayerLoop(unittest.TestCase):
         for solid in ("solid_0001.stl", "solid_0002.stl"):
             self.assertEqual((left / solid).read_bytes(), (right / solid).read_bytes(), solid)
 
+    def write_box(self, name, height=20e-6, triangles=12):
+        """A box 60 x 60 um on the plate; with fewer than 12 triangles it has a hole."""
+        lower, upper = np.array([280e-6, 30e-6, 0]), np.array([340e-6, 90e-6, height])
+        corner = [np.where([c & 1, c & 2, c & 4], upper, lower) for c in range(8)]
+        faces = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4),
+                 (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
+        text = "solid box\n"
+        for face in faces[:triangles]:
+            text += "facet normal 0 0 0\nouter loop\n"
+            text += "".join("vertex {:.9e} {:.9e} {:.9e}\n".format(*corner[c]) for c in face)
+            text += "endloop\nendfacet\n"
+        path = self.folder / name
+        path.write_text(text + "endsolid box\n")
+        return path
+
     def test_files_are_there_and_the_case_is_untouched(self):
         for name in ("report.html", "summary.json", "case_resolved.toml", "log.jsonl", "bed_0001.h5", "bed_0002.h5",
                      "heat_0001.h5", "heat_0002.h5", "solid_0001.stl", "solid_0002.stl", "checkpoint_0002.h5"):
@@ -136,7 +151,7 @@ class LayerLoop(unittest.TestCase):
         out = self.run_again("ranks", "--threads", 1, ranks=2)
         self.assert_same_layers(self.out, out)
         for heat in ("heat_0001.h5", "heat_0002.h5"):
-            a, b = arrays(self.out / heat, "grid"), arrays(out / heat, "grid")
+            a, b = arrays(self.out / heat, "VTKHDF/PointData"), arrays(out / heat, "VTKHDF/PointData")
             self.assertTrue(np.array_equal(a["melted"], b["melted"]))
             np.testing.assert_allclose(b["peak_temperature"], a["peak_temperature"], rtol=1e-10)
 
@@ -147,6 +162,21 @@ class LayerLoop(unittest.TestCase):
         self.assertIn('did you mean "power"', done.stderr)
         self.assertIn("track_length", done.stderr)
         self.assertFalse(out.exists())
+
+    def test_substrate_with_a_hole_is_bad_input(self):
+        out = self.folder / "never"
+        done = layerloop("run", CASE, "-o", out, "--set", f"machine.substrate={self.write_box('hole.stl', triangles=11)}")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("hole", done.stderr)
+        self.assertFalse(out.exists())
+
+    def test_substrate_is_there_for_blade_and_laser(self):
+        box = self.write_box("box.stl")
+        out = self.run_again("substrate", "--set", f"machine.substrate={box}", "--set", "run.layers=1")
+        layer = json.loads((out / "summary.json").read_text())["layers"][0]
+        # 60 x 60 x 20 um of the zone's 200 x 130 um stand in the void: the mean void layer is 50 um less 2.77 um.
+        # (measured over the interior, which the box fills more of)
+        self.assertLess(layer["void_layer"], 48e-6)
 
     def test_missing_case_is_file_trouble(self):
         self.assertEqual(layerloop("run", self.folder / "none.toml", "-o", self.folder / "never").returncode, 4)
@@ -159,11 +189,14 @@ class LayerLoop(unittest.TestCase):
             self.assertIn("time_step_fraction", done.stderr)
 
     def test_blade_against_raised_solid_stops_or_is_reported(self):
-        # Frozen grains of 28 um under a plate that goes down by 22 um a layer stand in the way of the next stroke.
-        case = ("--set", "machine.layer_thickness=22 um", "--set", "machine.frozen_zone=[2.5e-4, 3.5e-4]")
-        done = layerloop("run", CASE, "-o", self.folder / "raised", "--quiet", *case)
+        # The box stands 10 um above the platforms once the plate has gone down by its first 50 um.
+        raised = f"machine.substrate={self.write_box('raised.stl', height=60e-6)}"
+        done = layerloop("run", CASE, "-o", self.folder / "stopped", "--quiet", "--set", raised)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("blade", done.stderr)
+        self.assertIn("layer_thickness", done.stderr)
+        out = self.run_again("reported", "--set", raised, "--set", "machine.blade_collision=report", "--set", "run.layers=1")
+        self.assertIn("above the blade", json.loads((out / "summary.json").read_text())["layers"][0]["blade_note"])
 
     def test_frozen_zone_runs_without_laser(self):
         out = self.run_again("frozen", "--set", "machine.frozen_zone=[2.5e-4, 3.5e-4]")
