@@ -26,7 +26,8 @@ void add_case_options(CLI::App& verb, CaseOptions& options) {
   verb.add_option("case", options.case_file, "the case file (TOML)")->required()->type_name("FILE.toml");
   verb.add_option("--set", options.overrides, "override a key of the case: table.key=value")->type_name("KEY=VALUE");
   verb.add_option("--seed", options.seed, "override case.seed");
-  verb.add_option("--threads", options.threads, "threads of each rank (default: the cores of the machine shared by its ranks)")
+  verb.add_option("--threads", options.threads,
+                  "threads of each rank (default: the cores of the machine shared by its ranks)")
       ->check(CLI::Range(1, 1024));
 }
 

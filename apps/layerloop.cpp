@@ -30,7 +30,8 @@ int perform(apps::Action const& action) {
   } catch (Error const& error) {
     return end_with(comm, error.code(), error.what());
   } catch (std::exception const& error) {
-    return end_with(comm, ExitCode::bug, fmt::format("internal error: {} Please report it with the case file.", error.what()));
+    return end_with(comm, ExitCode::bug,
+                    fmt::format("internal error: {} Please report it with the case file.", error.what()));
   }
 }
 
@@ -40,7 +41,8 @@ int perform(apps::Action const& action) {
 /// The program `layerloop`: one verb a file.
 int main(int argc, char** argv) {
   using namespace layerloop;
-  CLI::App program("Laser powder bed fusion, layer by layer: spread, trace, melt, mesh, and the next layer on it.", "layerloop");
+  CLI::App program("Laser powder bed fusion, layer by layer: spread, trace, melt, mesh, and the next layer on it.",
+                   "layerloop");
   program.require_subcommand(1);
   program.set_version_flag("--version", LAYERLOOP_VERSION);
   apps::Action action;

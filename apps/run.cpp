@@ -15,9 +15,7 @@ void add_run(CLI::App& program, Action& chosen) {
   verb->add_option("-o,--output", to->folder, "folder for the results")->required()->type_name("DIR");
   verb->add_flag("--resume", to->resume, "go on from the last good checkpoint in the folder");
   verb->add_flag("--quiet", to->quiet, "no progress");
-  verb->callback([=, &chosen] {
-    chosen = [=] { coupling::run_layer_loop(read_case(*from), *to, Communicator{}); };
-  });
+  verb->callback([=, &chosen] { chosen = [=] { coupling::run_layer_loop(read_case(*from), *to, Communicator{}); }; });
 }
 
 }  // namespace layerloop::apps

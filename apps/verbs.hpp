@@ -16,7 +16,7 @@ struct CaseOptions {
   std::filesystem::path case_file;
   std::vector<std::string> overrides;  ///< --set table.key=value
   std::optional<std::uint64_t> seed;
-  int threads = 0;                     ///< 0: the cores of this machine shared by the ranks on it
+  int threads = 0;  ///< 0: the cores of this machine shared by the ranks on it
 };
 
 /// A verb registers its subcommand and, when the user chose it, leaves what is to be done in `chosen`.

@@ -23,8 +23,10 @@ void accumulate(AbsorbedPower& sum, AbsorbedPower const& other, double weight) {
 
   // Variances of independent traces add; the mean over positions weighs each by its incident power.
   double const incident = sum.incident + weight * other.incident;
-  double const error_watts = std::hypot(sum.standard_error * sum.incident, weight * other.standard_error * other.incident);
-  double const hits = sum.mean_bounces * static_cast<double>(sum.rays) + other.mean_bounces * static_cast<double>(other.rays);
+  double const error_watts =
+      std::hypot(sum.standard_error * sum.incident, weight * other.standard_error * other.incident);
+  double const hits =
+      sum.mean_bounces * static_cast<double>(sum.rays) + other.mean_bounces * static_cast<double>(other.rays);
   sum.incident = incident;
   sum.absorbed += weight * other.absorbed;
   sum.escaped += weight * other.escaped;

@@ -20,7 +20,7 @@ struct AbsorbedPower {
   double absorptivity = 0;    ///< absorbed / incident
   double standard_error = 0;  ///< of the absorptivity, from independent replicates
   std::int64_t rays = 0;
-  double mean_bounces = 0;    ///< surface hits per ray
+  double mean_bounces = 0;  ///< surface hits per ray
 };
 
 /// Adds `other` with a weight (share of the time spent at its beam position) into `sum`. \pre same grid

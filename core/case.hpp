@@ -48,13 +48,14 @@ struct ContactSettings {
 struct MachineSettings {
   double layer_thickness = 0;
   double recoating_speed = 0;
-  double dose_factor = 0;           ///< grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %
+  double dose_factor = 0;  ///< grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %
   double accumulation_length = 0, accumulation_depth = 0, gap_length = 0, deposition_length = 0;
-  double width = 0;                 ///< periodic, across the blade
+  double width = 0;  ///< periodic, across the blade
   double blade_width = 0, edge_radius = 0, blade_clearance = 0;
   BladeCollision blade_collision = BladeCollision::stop;
-  std::string substrate;            ///< STL of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
-  std::optional<std::array<double, 2>> frozen_zone;  ///< x from, to: freeze and mesh this part of the bed instead of the laser
+  std::string substrate;  ///< STL of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
+  std::optional<std::array<double, 2>>
+      frozen_zone;  ///< x from, to: freeze and mesh this part of the bed instead of the laser
 
   double deposition_begin() const { return accumulation_length + gap_length; }
   double deposition_end() const { return deposition_begin() + deposition_length; }
@@ -122,7 +123,7 @@ struct Case {
   HeatSettings heat;
   RunSettings run;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
-  Material material;                              ///< the powder's, overrides applied; substrate and part are the same metal
+  Material material;  ///< the powder's, overrides applied; substrate and part are the same metal
 
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
 };

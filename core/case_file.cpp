@@ -280,7 +280,8 @@ Case read_case(std::filesystem::path const& path, std::vector<std::string> const
   Case result = reader.read();
   if (!reader.faults().empty()) throw_faults(reader.faults(), path.string());
   std::string& substrate = result.machine.substrate;  // a path in a case is seen from the case
-  if (!substrate.empty()) substrate = (std::filesystem::absolute(path).parent_path() / substrate).lexically_normal().string();
+  if (!substrate.empty())
+    substrate = (std::filesystem::absolute(path).parent_path() / substrate).lexically_normal().string();
   return result;
 }
 

@@ -20,12 +20,18 @@ class Hdf5Writer {
   Hdf5Writer(Hdf5Writer const&) = delete;
   Hdf5Writer& operator=(Hdf5Writer const&) = delete;
 
-  /// Shape: slowest first; its product must equal values.size(). `unit` becomes the dataset's attribute "unit" unless empty.
-  void write(std::string_view dataset, std::span<double const> values, std::vector<std::uint64_t> shape, std::string_view unit = {});
-  void write(std::string_view dataset, std::span<float const> values, std::vector<std::uint64_t> shape, std::string_view unit = {});
-  void write(std::string_view dataset, std::span<std::int64_t const> values, std::vector<std::uint64_t> shape, std::string_view unit = {});
-  void write(std::string_view dataset, std::span<std::int32_t const> values, std::vector<std::uint64_t> shape, std::string_view unit = {});
-  void write(std::string_view dataset, std::span<std::uint8_t const> values, std::vector<std::uint64_t> shape, std::string_view unit = {});
+  /// Shape: slowest first; its product must equal values.size(). `unit` becomes the dataset's attribute "unit" unless
+  /// empty.
+  void write(std::string_view dataset, std::span<double const> values, std::vector<std::uint64_t> shape,
+             std::string_view unit = {});
+  void write(std::string_view dataset, std::span<float const> values, std::vector<std::uint64_t> shape,
+             std::string_view unit = {});
+  void write(std::string_view dataset, std::span<std::int64_t const> values, std::vector<std::uint64_t> shape,
+             std::string_view unit = {});
+  void write(std::string_view dataset, std::span<std::int32_t const> values, std::vector<std::uint64_t> shape,
+             std::string_view unit = {});
+  void write(std::string_view dataset, std::span<std::uint8_t const> values, std::vector<std::uint64_t> shape,
+             std::string_view unit = {});
   void attribute(std::string_view group_or_dataset, std::string_view name, std::string_view text);
   void attribute(std::string_view group_or_dataset, std::string_view name, std::vector<std::int64_t> const& values);
   void attribute(std::string_view group_or_dataset, std::string_view name, std::vector<double> const& values);

@@ -8,10 +8,10 @@ namespace layerloop {
 
 /// One straight pass of the beam at constant power and speed.
 struct Track {
-  Vec3 begin, end;      ///< beam centre on the plane z = 0 of the platforms [m]
-  double begin_time;    ///< [s] from the start of the layer's exposure
-  double end_time;      ///< [s]
-  double power;         ///< incident [W]
+  Vec3 begin, end;    ///< beam centre on the plane z = 0 of the platforms [m]
+  double begin_time;  ///< [s] from the start of the layer's exposure
+  double end_time;    ///< [s]
+  double power;       ///< incident [W]
 };
 
 /// The heat that a layer's exposure brings: between time[i] and time[i + 1] the cells of `power[i]` are heated.

@@ -23,10 +23,10 @@ struct LayerMetrics {
   double volume_fraction_nominal = 0;
   double volume_fraction_real = 0;
   double surface_coverage = 0;
-  double roughness_sa = 0;              ///< [m]
-  double d10 = 0, d50 = 0, d90 = 0;     ///< by volume [m]
+  double roughness_sa = 0;           ///< [m]
+  double d10 = 0, d50 = 0, d90 = 0;  ///< by volume [m]
   std::vector<LayerBin> bins;
-  HeightMap surface;                    ///< of the bed after spreading, over the deposition zone
+  HeightMap surface;  ///< of the bed after spreading, over the deposition zone
 };
 
 }  // namespace layerloop

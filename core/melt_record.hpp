@@ -16,12 +16,12 @@ struct PoolSize {
 /// What the heat solver remembers of every cell. Shapes: grid.size(), x fastest.
 struct MeltRecord {
   VoxelGrid grid;
-  std::vector<float> peak_temperature;      ///< [K]
-  std::vector<char> melted;                 ///< 1: was above the liquidus at some time
-  std::vector<float> time_above_liquidus;   ///< [s]
-  std::vector<PoolSize> track_pools;        ///< one a track, in scan order
-  PoolSize pool;                            ///< mean over the tracks that melted something
-  PoolSize pool_u_num;                      ///< discretisation: half a cell in each direction, combined with the scatter between sections
+  std::vector<float> peak_temperature;     ///< [K]
+  std::vector<char> melted;                ///< 1: was above the liquidus at some time
+  std::vector<float> time_above_liquidus;  ///< [s]
+  std::vector<PoolSize> track_pools;       ///< one a track, in scan order
+  PoolSize pool;                           ///< mean over the tracks that melted something
+  PoolSize pool_u_num;  ///< discretisation: half a cell in each direction, combined with the scatter between sections
 };
 
 }  // namespace layerloop

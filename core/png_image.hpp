@@ -12,7 +12,7 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< 3 * width * height
 };
 
-std::string encode_png(Image const& image);                                ///< bytes of a PNG file (libpng)
-void write_png(Image const& image, std::filesystem::path const& path);     ///< aside and renamed; \throws FileError
+std::string encode_png(Image const& image);                             ///< bytes of a PNG file (libpng)
+void write_png(Image const& image, std::filesystem::path const& path);  ///< aside and renamed; \throws FileError
 
 }  // namespace layerloop

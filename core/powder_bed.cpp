@@ -30,9 +30,7 @@ void PowderBed::retain(std::vector<char> const& keep) {
     auto const at = std::lower_bound(old_id.begin(), old_id.end(), key) - old_id.begin();
     return keep[static_cast<std::size_t>(at)] != 0;
   };
-  std::erase_if(contacts, [&](ContactSpring const& c) {
-    return !stays(c.key_a) || (c.key_b >= 0 && !stays(c.key_b));
-  });
+  std::erase_if(contacts, [&](ContactSpring const& c) { return !stays(c.key_a) || (c.key_b >= 0 && !stays(c.key_b)); });
   auto const compact = [&](auto& values) {
     std::size_t to = 0;
     for (std::size_t from = 0; from < keep.size(); ++from) {

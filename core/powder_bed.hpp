@@ -18,13 +18,13 @@ struct ContactSpring {
 /// All grains of a run as a structure of arrays, in ascending order of id. Plain data: every rank holds the same copy
 /// between stages. SI units, machine frame.
 struct PowderBed {
-  std::vector<std::int64_t> id;  ///< never reused within a run
-  std::vector<double> x, y, z;   ///< centres [m]; y in [0, width) where the bed is periodic
-  std::vector<double> radius;    ///< [m]
-  std::vector<double> vx, vy, vz;            ///< velocity [m/s]
-  std::vector<double> wx, wy, wz;            ///< angular velocity [rad/s]
-  std::vector<std::int32_t> material;        ///< index into the run's list of materials
-  std::vector<ContactSpring> contacts;       ///< ascending by (key_a, key_b)
+  std::vector<std::int64_t> id;         ///< never reused within a run
+  std::vector<double> x, y, z;          ///< centres [m]; y in [0, width) where the bed is periodic
+  std::vector<double> radius;           ///< [m]
+  std::vector<double> vx, vy, vz;       ///< velocity [m/s]
+  std::vector<double> wx, wy, wz;       ///< angular velocity [rad/s]
+  std::vector<std::int32_t> material;   ///< index into the run's list of materials
+  std::vector<ContactSpring> contacts;  ///< ascending by (key_a, key_b)
 
   std::size_t size() const { return id.size(); }
   Vec3 position(std::size_t i) const { return {x[i], y[i], z[i]}; }

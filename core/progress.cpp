@@ -44,8 +44,8 @@ void Progress::print(double done) {
   std::string const left = share > 0.005 ? as_time(elapsed * (1 - share) / share) + " left" : "";
   if (terminal_) {
     auto const filled = static_cast<std::size_t>(share * 30);
-    fmt::print(stderr, "\r\x1b[K  {:<24} [{}{}] {:3.0f} %  {}", stage_, std::string(filled, '#'), std::string(30 - filled, '.'),
-               100 * share, left);
+    fmt::print(stderr, "\r\x1b[K  {:<24} [{}{}] {:3.0f} %  {}", stage_, std::string(filled, '#'),
+               std::string(30 - filled, '.'), 100 * share, left);
   } else {
     fmt::print(stderr, "  {}: {:.0f} %, {}\n", stage_, 100 * share, left);
   }

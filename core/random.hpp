@@ -11,10 +11,11 @@ enum class RandomStream : std::uint32_t { grain_size = 1, grain_position = 2, ra
 
 /// Four independent uniform numbers in (0, 1), a pure function of its arguments (Philox 4x32-10, Salmon et al. 2011):
 /// the same for any number of ranks and threads, and after a restart.
-inline std::array<double, 4> uniform4(std::uint64_t seed, RandomStream stream, std::uint64_t id, std::uint32_t draw = 0) {
+inline std::array<double, 4> uniform4(std::uint64_t seed, RandomStream stream, std::uint64_t id,
+                                      std::uint32_t draw = 0) {
   using Generator = r123::Philox4x32;
-  Generator::ctr_type const counter{{static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32), draw,
-                                     static_cast<std::uint32_t>(stream)}};
+  Generator::ctr_type const counter{
+      {static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32), draw, static_cast<std::uint32_t>(stream)}};
   Generator::key_type const key{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
   Generator::ctr_type const bits = Generator{}(counter, key);
   std::array<double, 4> u;

@@ -13,7 +13,9 @@ struct TriangleSurface {
   std::vector<Vec3> vertices;                          ///< [m]
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< corners, index into vertices
 
-  Vec3 const& corner(std::size_t t, int c) const { return vertices[static_cast<std::size_t>(triangles[t][static_cast<std::size_t>(c)])]; }
+  Vec3 const& corner(std::size_t t, int c) const {
+    return vertices[static_cast<std::size_t>(triangles[t][static_cast<std::size_t>(c)])];
+  }
   Vec3 normal(std::size_t t) const;  ///< outward unit normal
   void shift(Vec3 const& by);
 };

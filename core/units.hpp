@@ -6,14 +6,28 @@ namespace layerloop {
 
 /// What a quantity measures; the SI unit is what a bare number means.
 enum class Dimension {
-  none, length, speed, time, mass, density, pressure, energy_density, power, temperature, angle, conductivity,
-  specific_heat, specific_energy, molar_mass
+  none,
+  length,
+  speed,
+  time,
+  mass,
+  density,
+  pressure,
+  energy_density,
+  power,
+  temperature,
+  angle,
+  conductivity,
+  specific_heat,
+  specific_energy,
+  molar_mass
 };
 
 std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty for none
 
 /// "30 um" -> 3.0e-5 for Dimension::length.
-/// \throws InputError when the text is not a number and a unit, or the unit measures something else; names units that fit
+/// \throws InputError when the text is not a number and a unit, or the unit measures something else; names units that
+/// fit
 double parse_quantity(std::string_view text, Dimension dimension);
 
 /// An SI value for people, in the unit they would use: 3.0e-5 m -> "30 um".

@@ -21,7 +21,8 @@ struct VoxelGrid {
             static_cast<std::int32_t>(index / (std::int64_t{n[0]} * n[1]))};
   }
   Vec3 centre(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    return origin + cell * Vec3(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, static_cast<double>(k) + 0.5);
+    return origin +
+           cell * Vec3(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, static_cast<double>(k) + 0.5);
   }
   Vec3 upper() const { return origin + cell * Vec3(n[0], n[1], n[2]); }
   /// Cell that holds the point; may lie outside the grid (see contains).

@@ -28,9 +28,10 @@ PowderBed read_bed_group(Hdf5Reader const& file);
 void write_surface_group(Hdf5Writer& file, TriangleSurface const& surface);
 TriangleSurface read_surface_group(Hdf5Reader const& file);
 
-/// bed_NNNN.h5: grains as VTK vertices with their radius, triangles of the substrate as VTK triangles; fields are per grain
-/// (0 on triangle corners). UnstructuredGrid.
-void write_bed_file(std::filesystem::path const& path, PowderBed const& bed, TriangleSurface const& substrate, std::span<Field const> fields);
+/// bed_NNNN.h5: grains as VTK vertices with their radius, triangles of the substrate as VTK triangles; fields are per
+/// grain (0 on triangle corners). UnstructuredGrid.
+void write_bed_file(std::filesystem::path const& path, PowderBed const& bed, TriangleSurface const& substrate,
+                    std::span<Field const> fields);
 
 /// heat_NNNN.h5: ImageData with the fields as point data on cell centres, and group /grid.
 void write_grid_file(std::filesystem::path const& path, VoxelGrid const& grid, std::span<Field const> fields);

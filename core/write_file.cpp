@@ -20,7 +20,8 @@ void sync(std::filesystem::path const& path, int flags) {
   int const reason = errno;
   if (file >= 0) ::close(file);
   // Some file systems cannot sync a folder and say EINVAL; the rename is then as durable as they make it.
-  if (!good && reason != EINVAL) throw FileError(fmt::format("cannot make {} durable ({})", path.string(), std::strerror(reason)));
+  if (!good && reason != EINVAL)
+    throw FileError(fmt::format("cannot make {} durable ({})", path.string(), std::strerror(reason)));
 }
 
 }  // namespace
@@ -46,7 +47,8 @@ void write_file(std::filesystem::path const& path, std::string_view text) {
     std::ofstream file(temporary, std::ios::binary);
     file.write(text.data(), static_cast<std::streamsize>(text.size()));
     file.close();
-    if (!file) throw FileError(fmt::format("cannot write {} ({}); is the disk full?", temporary.string(), std::strerror(errno)));
+    if (!file)
+      throw FileError(fmt::format("cannot write {} ({}); is the disk full?", temporary.string(), std::strerror(errno)));
   }
   commit_file(temporary, path);
 }

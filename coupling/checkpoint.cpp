@@ -97,7 +97,8 @@ void save_checkpoint(fs::path const& folder, BuildState const& state, std::strin
   }
 }
 
-std::optional<BuildState> load_newest_checkpoint(fs::path const& folder, std::string const& case_text, std::string& skipped) {
+std::optional<BuildState> load_newest_checkpoint(fs::path const& folder, std::string const& case_text,
+                                                 std::string& skipped) {
   for (fs::path const& path : newest_first(folder)) {
     // The digest is checked before libhdf5 sees the file: it is not safe on damaged ones.
     if (!fs::exists(digest_path(path)) || read_file(digest_path(path)) != digest(read_file(path))) {
@@ -106,9 +107,10 @@ std::optional<BuildState> load_newest_checkpoint(fs::path const& folder, std::st
     }
     Hdf5Reader const file(path);
     if (without_layer_count(read_text(file, "case")) != without_layer_count(case_text)) {
-      throw InputError(fmt::format(
-          "{} belongs to another case (its settings differ from the case file) Resume with the case it was started with, or choose another output folder.",
-          path.string()));
+      throw InputError(
+          fmt::format("{} belongs to another case (its settings differ from the case file) Resume with the case it was "
+                      "started with, or choose another output folder.",
+                      path.string()));
     }
     return read_state(file);
   }

@@ -37,9 +37,11 @@ Cost estimate_cost(Case const& checked) {
   if (machine.frozen_zone) return cost;
 
   auto const tracks = scan.kind == ScanKind::track ? 1 : scan.tracks;
-  cost.rays = checked.run.layers * tracks * std::llround(scan.track_length / checked.optics.position_spacing) * checked.optics.rays;
+  cost.rays = checked.run.layers * tracks * std::llround(scan.track_length / checked.optics.position_spacing) *
+              checked.optics.rays;
   double const length = std::min(scan.track_length + 2 * checked.heat.margin, machine.deposition_length);
-  double const height = checked.heat.substrate_depth + static_cast<double>(checked.run.layers) * machine.layer_thickness;
+  double const height =
+      checked.heat.substrate_depth + static_cast<double>(checked.run.layers) * machine.layer_thickness;
   cost.cells = std::llround(length * machine.width * height / std::pow(checked.heat.cell_size, 3));
   // A grain with its neighbours and springs takes about 1 kB, a cell of the heat grid about 150 B.
   cost.memory = 1e3 * static_cast<double>(cost.particles) + 150.0 * static_cast<double>(cost.cells);

@@ -10,8 +10,8 @@ struct Cost {
   std::int64_t particles = 0;   ///< fed over the whole run
   std::int64_t time_steps = 0;  ///< of DEM: sweeps only, settling adds roughly half as many
   std::int64_t rays = 0;
-  std::int64_t cells = 0;       ///< of the heat grid, at the last layer
-  double memory = 0;            ///< [bytes] that particles, grid and traces take, about
+  std::int64_t cells = 0;  ///< of the heat grid, at the last layer
+  double memory = 0;       ///< [bytes] that particles, grid and traces take, about
 };
 
 Cost estimate_cost(Case const& checked);

@@ -35,7 +35,8 @@ std::vector<BeamStop> beam_stops(std::vector<Track> const& tracks, double spacin
 }
 
 /// The given absorptivity instead of a trace: the Gaussian beam on the topmost metal of every column (periodic in y).
-AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, double spot_radius, CellContent const& cells) {
+AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, double spot_radius,
+                                    CellContent const& cells) {
   VoxelGrid const& grid = cells.grid;
   double const width = grid.cell * grid.n[1];
   auto const share = [&](double from, double to) {  // of a Gaussian of standard deviation w/2 between two offsets
@@ -49,7 +50,8 @@ AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, d
   double on_grid = 0;
   for (std::int32_t j = 0; j < grid.n[1]; ++j) {
     double y = grid.origin.y() + j * grid.cell - stop.centre.y();
-    double const share_y = share(y, y + grid.cell) + share(y - width, y - width + grid.cell) + share(y + width, y + width + grid.cell);
+    double const share_y =
+        share(y, y + grid.cell) + share(y - width, y - width + grid.cell) + share(y + width, y + width + grid.cell);
     for (std::int32_t i = 0; i < grid.n[0]; ++i) {
       double const x = grid.origin.x() + i * grid.cell - stop.centre.x();
       double const watts = power.absorbed * share_y * share(x, x + grid.cell);
@@ -79,8 +81,8 @@ AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, d
 
 /// What every rank needs of another rank's trace.
 void share_out(AbsorbedPower& power, int owner, Communicator const& comm) {
-  std::vector<double> scalars{power.incident,     power.absorbed,       power.escaped,
-                              power.residual,     power.outside_grid,   power.absorptivity,
+  std::vector<double> scalars{power.incident,       power.absorbed,     power.escaped,
+                              power.residual,       power.outside_grid, power.absorptivity,
                               power.standard_error, power.mean_bounces, static_cast<double>(power.rays)};
   comm.broadcast(power.cell, owner);
   comm.broadcast(power.watts, owner);
@@ -98,8 +100,8 @@ void share_out(AbsorbedPower& power, int owner, Communicator const& comm) {
 
 }  // namespace
 
-Exposure expose_tracks(Case const& checked, std::int32_t layer, raytrace::BedScene const& scene, CellContent const& cells,
-                       Communicator const& comm, bool show_progress) {
+Exposure expose_tracks(Case const& checked, std::int32_t layer, raytrace::BedScene const& scene,
+                       CellContent const& cells, Communicator const& comm, bool show_progress) {
   Exposure exposure;
   exposure.source.tracks = scan_path(checked, layer);
   std::vector<BeamStop> const stops = beam_stops(exposure.source.tracks, checked.optics.position_spacing);

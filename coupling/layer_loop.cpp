@@ -7,7 +7,6 @@
 #include "core/case_file.hpp"
 #include "core/error.hpp"
 #include "core/progress.hpp"
-#include "coupling/ledger.hpp"
 #include "coupling/build_state.hpp"
 #include "coupling/checkpoint.hpp"
 #include "coupling/consolidation.hpp"
@@ -15,6 +14,7 @@
 #include "coupling/exposure.hpp"
 #include "coupling/freeze_zone.hpp"
 #include "coupling/layer_output.hpp"
+#include "coupling/ledger.hpp"
 #include "coupling/melt_section.hpp"
 #include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
@@ -53,7 +53,8 @@ void dose(Run const& run, BuildState& build) {
   Ledger& ledger = build.record.ledger;
   std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
   double const volume_before = total_volume(build.bed);
-  build.next_id = dem::dose(build.bed, run.checked, build.substrate, count, build.next_id, run.comm, run.show_progress());
+  build.next_id =
+      dem::dose(build.bed, run.checked, build.substrate, count, build.next_id, run.comm, run.show_progress());
   ledger.particles_fed += count;
   ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
 }
@@ -75,7 +76,8 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
 }
 
 /// Pictures are drawn by the root rank from the scene that is traced.
-void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene, std::initializer_list<View> views, LayerRecord& layer) {
+void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene, std::initializer_list<View> views,
+             LayerRecord& layer) {
   Stopwatch const timed(build.record.wall_time.io);
   for (View const view : views) run.output.picture(scene, build.bed, view, layer);
 }
@@ -168,9 +170,13 @@ RunRecord run_layer_loop(Case const& checked, RunOptions const& options, Communi
     {
       Stopwatch const timed(build.record.wall_time.total);
       build_layer(run, build);
+    }
+    {
+      Stopwatch const timed(build.record.wall_time.total);
       run.output.layer(build);
     }
-    if (stop_requested()) throw StoppedBySignal("stopped by a signal after a checkpoint Go on with --resume.");
+    if (comm.any(stop_requested()) && build.layers_done < checked.run.layers)
+      throw StoppedBySignal("stopped by a signal after a checkpoint (as asked) go on with --resume");
   }
   run.output.end(build);
   return build.record;

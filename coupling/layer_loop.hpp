@@ -13,10 +13,10 @@ struct RunOptions {
   bool quiet = false;            ///< no progress
 };
 
-/// The layer loop: dose, spread, measure, trace, heat, consolidate, mesh, lower, `run.layers` times. Leaves in the folder
-/// bed_NNNN.h5, heat_NNNN.h5, solid_NNNN.stl, pictures and a checkpoint per layer, and at the end summary.json, CSV tables
-/// and report.html. \note Collective
-/// \throws PhysicsError a guard or a ledger stopped the run; StoppedBySignal after a checkpoint; FileError
+/// The layer loop: dose, spread, measure, trace, heat, consolidate, mesh, lower, `run.layers` times. Leaves in the
+/// folder bed_NNNN.h5, heat_NNNN.h5, solid_NNNN.stl, pictures and a checkpoint per layer, and at the end summary.json,
+/// CSV tables and report.html. \note Collective \throws PhysicsError a guard or a ledger stopped the run;
+/// StoppedBySignal after a checkpoint; FileError
 RunRecord run_layer_loop(Case const& checked, RunOptions const& options, Communicator const& comm);
 
 }  // namespace layerloop::coupling

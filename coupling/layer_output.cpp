@@ -55,10 +55,14 @@ void LayerOutput::picture(raytrace::BedScene const& scene, PowderBed const& bed,
   paint.grains = colour_by_size(bed);
   auto const [name, caption] = [&]() -> std::array<std::string, 2> {
     switch (view) {
-      case View::whole_machine: return {"machine", "Reservoir and layer after the sweep; coloured by grain size"};
-      case View::oblique: return {"layer", "The layer as the laser sees it: the scene that was traced, coloured by grain size"};
-      case View::from_above: return {"layer_top", "The same scene from above"};
-      case View::part: return {"part", "After the exposure: the part and the grains that stayed whole"};
+      case View::whole_machine:
+        return {"machine", "Reservoir and layer after the sweep; coloured by grain size"};
+      case View::oblique:
+        return {"layer", "The layer as the laser sees it: the scene that was traced, coloured by grain size"};
+      case View::from_above:
+        return {"layer_top", "The same scene from above"};
+      case View::part:
+        return {"part", "After the exposure: the part and the grains that stayed whole"};
     }
     return {};
   }();
@@ -71,9 +75,9 @@ void LayerOutput::grid(CellContent const& cells, MeltRecord const& melt, LayerRe
   if (!writes_) return;
   std::vector<double> const peak = as_doubles(melt.peak_temperature), melted = as_doubles(melt.melted),
                             liquid = as_doubles(melt.time_above_liquidus);
-  std::array<Field, 5> const fields{Field{"solid_fraction", "", cells.solid}, Field{"powder_fraction", "", cells.powder},
-                                    Field{"peak_temperature", "K", peak}, Field{"melted", "", melted},
-                                    Field{"time_above_liquidus", "s", liquid}};
+  std::array<Field, 5> const fields{Field{"solid_fraction", "", cells.solid},
+                                    Field{"powder_fraction", "", cells.powder}, Field{"peak_temperature", "K", peak},
+                                    Field{"melted", "", melted}, Field{"time_above_liquidus", "s", liquid}};
   write_grid_file(folder_ / fmt::format("heat_{:04}.h5", layer.layer), cells.grid, fields);
 }
 

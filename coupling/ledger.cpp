@@ -12,9 +12,10 @@ namespace {
 
 void require(double error, double limit, char const* what) {
   if (error <= limit) return;  // also fails on NaN
-  throw PhysicsError(fmt::format(
-      "the ledger of {} does not close (relative error {:.2e}, limit {:.0e}) This is a fault of the program: please report it with the case file.",
-      what, error, limit));
+  throw PhysicsError(
+      fmt::format("the ledger of {} does not close (relative error {:.2e}, limit {:.0e}) This is a fault of the "
+                  "program: please report it with the case file.",
+                  what, error, limit));
 }
 
 }  // namespace
@@ -41,7 +42,8 @@ void audit(BuildState& build, Case const& checked) {
   ledger.particles_bed = static_cast<std::int64_t>(build.bed.size());
   ledger.mass_bed = checked.material.density * total_volume(build.bed);
 
-  std::int64_t const accounted = ledger.particles_bed + ledger.particles_overflow + ledger.particles_melted + ledger.particles_lost;
+  std::int64_t const accounted =
+      ledger.particles_bed + ledger.particles_overflow + ledger.particles_melted + ledger.particles_lost;
   double const mass = ledger.mass_bed + ledger.mass_overflow + ledger.mass_melted + ledger.mass_lost;
   ledger.mass_relative_error = std::abs(ledger.mass_fed - mass) / ledger.mass_fed;
 

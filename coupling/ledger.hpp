@@ -12,10 +12,9 @@ void book_light(Ledger& ledger, Exposure const& exposure, std::int32_t layer);
 /// Enters the heat of one layer: energies add, the relative error is the worst layer's.
 void book_heat(Ledger& ledger, thermal::HeatOutcome const& heat);
 
-/// Counts and weighs what is in the bed, closes the ledger of mass and particles, and checks it and the ledgers of light
-/// and heat: particles exactly, mass to 1e-12, rays to 1e-12 with a residual below 1e-6, heat to 1e-6 (the implicit
-/// solver's tolerance).
-/// \throws PhysicsError a ledger does not close: names it and by how much
+/// Counts and weighs what is in the bed, closes the ledger of mass and particles, and checks it and the ledgers of
+/// light and heat: particles exactly, mass to 1e-12, rays to 1e-12 with a residual below 1e-6, heat to 1e-6 (the
+/// implicit solver's tolerance). \throws PhysicsError a ledger does not close: names it and by how much
 void audit(BuildState& build, Case const& checked);
 
 }  // namespace layerloop::coupling

@@ -13,8 +13,14 @@ std::uint8_t state_of(CellContent const& cells, MeltRecord const& melt, std::siz
 MeltSection cut(MeltRecord const& melt, CellContent const& cells, double x) {
   VoxelGrid const& grid = cells.grid;
   auto const i = std::clamp<std::int64_t>(grid.locate({x, 0, 0})[0], 0, grid.n[0] - 1);
-  MeltSection section{.x = x, .y0 = grid.origin.y(), .z0 = grid.origin.z(), .cell = grid.cell, .ny = grid.n[1], .nz = grid.n[2],
-                      .peak_temperature = {}, .state = {}};
+  MeltSection section{.x = x,
+                      .y0 = grid.origin.y(),
+                      .z0 = grid.origin.z(),
+                      .cell = grid.cell,
+                      .ny = grid.n[1],
+                      .nz = grid.n[2],
+                      .peak_temperature = {},
+                      .state = {}};
   for (std::int32_t k = 0; k < grid.n[2]; ++k) {
     for (std::int32_t j = 0; j < grid.n[1]; ++j) {
       auto const cell = static_cast<std::size_t>(grid.index(i, j, k));
@@ -27,7 +33,8 @@ MeltSection cut(MeltRecord const& melt, CellContent const& cells, double x) {
 
 }  // namespace
 
-std::vector<MeltSection> melt_sections(MeltRecord const& melt, CellContent const& cells, std::vector<Track> const& tracks) {
+std::vector<MeltSection> melt_sections(MeltRecord const& melt, CellContent const& cells,
+                                       std::vector<Track> const& tracks) {
   double const first = std::min(tracks.front().begin.x(), tracks.front().end.x());
   double const last = std::max(tracks.front().begin.x(), tracks.front().end.x());
   std::vector<MeltSection> sections;

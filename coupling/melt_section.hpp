@@ -9,6 +9,7 @@
 namespace layerloop::coupling {
 
 /// Cuts across the tracks at a quarter, half and three quarters of their length.
-std::vector<MeltSection> melt_sections(MeltRecord const& melt, CellContent const& cells, std::vector<Track> const& tracks);
+std::vector<MeltSection> melt_sections(MeltRecord const& melt, CellContent const& cells,
+                                       std::vector<Track> const& tracks);
 
 }  // namespace layerloop::coupling

@@ -5,7 +5,9 @@
 
 namespace layerloop::coupling {
 namespace {
-double middle_of_bed(MachineSettings const& machine) { return 0.5 * (machine.deposition_begin() + machine.deposition_end()); }
+double middle_of_bed(MachineSettings const& machine) {
+  return 0.5 * (machine.deposition_begin() + machine.deposition_end());
+}
 }  // namespace
 
 std::vector<Track> scan_path(Case const& checked, std::int32_t layer) {

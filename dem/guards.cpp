@@ -41,7 +41,9 @@ Simulation::Watch Simulation::shared_watch() {
                                stop_requested() ? 1.0 : 0.0};
   MPI_Allreduce(MPI_IN_PLACE, values.data(), 5, MPI_DOUBLE, MPI_MAX, communicator_.handle());
   if (values[4] > 0)
-    throw StoppedBySignal("stopped by a signal while grains were moving; this layer starts again on resume");
+    throw StoppedBySignal(
+        "stopped by a signal while grains were moving (this layer is lost, earlier ones are on disk) go on with "
+        "--resume");
   watch_ = {};
   return {values[0], values[1], values[2], values[3]};
 }

@@ -111,7 +111,10 @@ std::int64_t Exposure::implicit_step(std::vector<CellPower> const& source, doubl
 }
 
 double Exposure::check() {
-  if (comm_.any(stop_requested())) throw StoppedBySignal("the heat solver was asked to stop");
+  if (comm_.any(stop_requested()))
+    throw StoppedBySignal(
+        "stopped by a signal while the metal was hot (this layer is lost, earlier ones are on disk) go on with "
+        "--resume");
   CompensatedSum vapour, lost;
   for (OpenCell const& open : system_.sink.cells) vapour.add(open.evaporated), lost.add(open.lost);
   evaporated_ = comm_.sum(vapour.value());

@@ -5,9 +5,11 @@ usage: layer_loop_test.py LAYERLOOP MPIEXEC     (the program, and what starts it
 import json
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -127,6 +129,18 @@ class LayerLoop(unittest.TestCase):
         self.run_again("resumed", "--threads", 1, "--resume")
         self.assert_same_layers(self.out, out)
         self.assertEqual(self.summary["layers"], json.loads((out / "summary.json").read_text())["layers"])
+
+    def test_signal_stops_in_order_and_resume_equals_an_uninterrupted_run(self):
+        out = self.folder / "signalled"
+        run = subprocess.Popen([PROGRAM, "run", CASE, "-o", out, "--quiet", "--threads", "1"], stderr=subprocess.PIPE, text=True)
+        while run.poll() is None and not (out / "checkpoint_0001.xxh3").exists():
+            time.sleep(0.01)
+        run.send_signal(signal.SIGUSR1)
+        _, told = run.communicate(timeout=120)
+        self.assertEqual(run.returncode, 5, told)
+        self.assertIn("--resume", told)
+        self.run_again("signalled", "--threads", 1, "--resume")
+        self.assert_same_layers(self.out, out)
 
     def test_resume_passes_over_a_damaged_checkpoint(self):
         out = self.folder / "damaged"
