@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/grain_size.hpp"
 #include "core/units.hpp"
 
 namespace layerloop {
@@ -74,18 +75,6 @@ class CaseChecks {
     }
   }
 
-  /// Mean volume of a grain; by volume the numbers are proportional to fraction / volume.
-  double mean_grain_volume() const {
-    double share = 0, weighted = 0;
-    for (std::size_t i = 0; i < c_.powder.diameters.size(); ++i) {
-      double const volume = pi / 6 * std::pow(c_.powder.diameters[i], 3), fraction = c_.powder.fractions[i];
-      bool const by_number = c_.powder.basis == SizeBasis::number;
-      share += by_number ? fraction : fraction / volume;
-      weighted += by_number ? fraction * volume : fraction;
-    }
-    return weighted / share;
-  }
-
   /// The feed must stand above the platforms, or the blade passes over it, and must stay on its zone.
   void feed() const {
     MachineSettings const& m = c_.machine;
@@ -93,7 +82,7 @@ class CaseChecks {
                                          "machine.accumulation_depth", "machine.width"})) {
       return;
     }
-    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume();
+    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume(c_.powder);
     if (!(volume > 0)) return;
     double const solid_height = volume / (m.accumulation_length * m.width);
     double const loosest = solid_height / 0.5, densest = solid_height / 0.64;

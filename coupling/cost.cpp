@@ -2,24 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/grain_size.hpp"
+#include "coupling/scan_path.hpp"
 #include "dem/machine_rig.hpp"
 
 namespace layerloop::coupling {
-namespace {
-
-double mean_grain_volume(PowderSettings const& powder) {
-  double volume = 0, count = 0;
-  for (std::size_t c = 0; c < powder.diameters.size(); ++c) {
-    double const grain = std::numbers::pi / 6 * std::pow(powder.diameters[c], 3);
-    volume += powder.basis == SizeBasis::number ? powder.fractions[c] * grain : powder.fractions[c];
-    count += powder.basis == SizeBasis::number ? powder.fractions[c] : powder.fractions[c] / grain;
-  }
-  return volume / count;
-}
-
-}  // namespace
 
 std::int64_t dose_count(Case const& checked) {
   MachineSettings const& machine = checked.machine;
@@ -36,7 +24,7 @@ Cost estimate_cost(Case const& checked) {
   cost.time_steps = checked.run.layers * std::llround(sweep / dem::motion_of(checked).time_step);
   if (machine.frozen_zone) return cost;
 
-  auto const tracks = scan.kind == ScanKind::track ? 1 : scan.tracks;
+  auto const tracks = static_cast<std::int64_t>(scan_path(checked, 1).size());
   cost.rays = checked.run.layers * tracks * std::llround(scan.track_length / checked.optics.position_spacing) *
               checked.optics.rays;
   double const length = std::min(scan.track_length + 2 * checked.heat.margin, machine.deposition_length);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
@@ -48,8 +49,9 @@ AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, d
   power.absorbed = absorptivity * stop.power;
   power.escaped = stop.power - power.absorbed;
   double on_grid = 0;
+  std::vector<std::pair<std::int64_t, double>> deposits;  // cell, watts
   for (std::int32_t j = 0; j < grid.n[1]; ++j) {
-    double y = grid.origin.y() + j * grid.cell - stop.centre.y();
+    double const y = grid.origin.y() + j * grid.cell - stop.centre.y();
     double const share_y =
         share(y, y + grid.cell) + share(y - width, y - width + grid.cell) + share(y + width, y + width + grid.cell);
     for (std::int32_t i = 0; i < grid.n[0]; ++i) {
@@ -62,21 +64,17 @@ AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, d
         return cells.solid[c] + cells.powder[c];
       };
       while (k > 0 && metal(k) < 0.5) --k;
-      power.cell.push_back(grid.index(i, j, k));
-      power.watts.push_back(watts);
+      deposits.emplace_back(grid.index(i, j, k), watts);
       on_grid += watts;
     }
   }
-  std::vector<std::size_t> order(power.cell.size());
-  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return power.cell[a] < power.cell[b]; });
-  AbsorbedPower sorted = power;
-  for (std::size_t c = 0; c < order.size(); ++c) {
-    sorted.cell[c] = power.cell[order[c]];
-    sorted.watts[c] = power.watts[order[c]];
+  std::ranges::sort(deposits);
+  for (auto const& [cell, watts] : deposits) {
+    power.cell.push_back(cell);
+    power.watts.push_back(watts);
   }
-  sorted.outside_grid = power.absorbed - on_grid;
-  return sorted;
+  power.outside_grid = power.absorbed - on_grid;
+  return power;
 }
 
 /// What every rank needs of another rank's trace.

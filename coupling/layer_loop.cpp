@@ -126,8 +126,10 @@ void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
     layer.consolidation = consolidate(build.solid, build.bed, build.substrate, melt, cells, checked);
   }
   layer.part_surface = top_of_solid(build.solid, checked);
-  raytrace::BedScene const scene(build.bed, build.substrate, {0.0, checked.machine.width});
-  picture(run, build, scene, {View::part}, layer);
+  if (run.output.draws_pictures()) {
+    raytrace::BedScene const scene(build.bed, build.substrate, {0.0, checked.machine.width});
+    picture(run, build, scene, {View::part}, layer);
+  }
 
   Ledger& ledger = build.record.ledger;
   ledger.particles_melted += layer.consolidation.grains_melted;

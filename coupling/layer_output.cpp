@@ -41,7 +41,7 @@ LayerOutput::LayerOutput(Case const& checked, fs::path folder, Communicator cons
 }
 
 void LayerOutput::picture(raytrace::BedScene const& scene, PowderBed const& bed, View view, LayerRecord& layer) const {
-  if (!writes_ || !checked_.run.pictures) return;
+  if (!draws_pictures()) return;
   MachineSettings const& machine = checked_.machine;
   Vec3 const lower(machine.deposition_begin(), 0, -1.5 * machine.layer_thickness);
   Vec3 const upper(machine.deposition_end(), machine.width, 0.5 * machine.layer_thickness);

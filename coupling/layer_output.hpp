@@ -20,6 +20,9 @@ class LayerOutput {
   /// Makes the folder, writes case_resolved.toml. \throws FileError
   LayerOutput(Case const& checked, std::filesystem::path folder, Communicator const& comm);
 
+  /// Whether picture() does anything on this rank.
+  bool draws_pictures() const { return writes_ && checked_.run.pictures; }
+
   /// A picture of the scene, unless run.pictures is off; its name and caption go into the record of the layer.
   void picture(raytrace::BedScene const& scene, PowderBed const& bed, View view, LayerRecord& layer) const;
 
