@@ -115,9 +115,12 @@ void write_dataset(hid_t file, std::filesystem::path const& path, std::string co
   Handle const space{checked(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), path, what),
                      H5Sclose};
   Handle const links{checked(H5Pcreate(H5P_LINK_CREATE), path, what), H5Pclose};
+  // Without the time of creation, the same contents are the same bytes.
+  Handle const creation{checked(H5Pcreate(H5P_DATASET_CREATE), path, what), H5Pclose};
+  checked(H5Pset_obj_track_times(creation, false), path, what);
   checked(H5Pset_create_intermediate_group(links, 1), path, what);
   Handle const dataset{
-      checked(H5Dcreate2(file, name.c_str(), native<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT), path, what),
+      checked(H5Dcreate2(file, name.c_str(), native<T>(), space, links, creation, H5P_DEFAULT), path, what),
       H5Dclose};
   if (count > 0) checked(H5Dwrite(dataset, native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path, what);
 }
