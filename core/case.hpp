@@ -14,7 +14,10 @@ namespace layerloop {
 // its key, unit, range, default and sentence; a member without a row here would never be set.
 
 enum class SizeBasis { number, volume };
-enum class Cohesion { none, sjkr2 };
+enum class Cohesion { none, sjkr, sjkr2, jkr, dmt };
+enum class RestitutionForm { exact, clamped };
+enum class RollingModel { cdt, epsd2 };
+enum class SlidingSpring { rescaled, kept };
 enum class WallCohesionArea { liggghts, eq6 };
 enum class CoulombOn { repulsive, total };
 enum class BladeCollision { stop, report };
@@ -34,10 +37,14 @@ struct ContactSettings {
   double youngs_modulus = 0;  ///< [Pa]
   double poisson_ratio = 0;
   double restitution = 0;
+  RestitutionForm restitution_form = RestitutionForm::exact;
   double sliding_friction = 0;
+  SlidingSpring sliding_spring = SlidingSpring::rescaled;
   double rolling_friction = 0;
+  RollingModel rolling_model = RollingModel::cdt;
   Cohesion cohesion = Cohesion::sjkr2;
-  double cohesion_energy_density = 0;  ///< [J/m^3]
+  double cohesion_energy_density = 0;  ///< sjkr, sjkr2 [J/m^3]
+  double surface_energy = 0;           ///< jkr, dmt: of one surface; two of them touch [J/m^2]
   double wall_friction = 0;
   WallCohesionArea wall_cohesion_area = WallCohesionArea::liggghts;
   CoulombOn coulomb_on = CoulombOn::repulsive;

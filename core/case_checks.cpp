@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/grain_size.hpp"
+#include "core/rayleigh_time.hpp"
 #include "core/units.hpp"
 
 namespace layerloop {
@@ -99,23 +100,20 @@ class CaseChecks {
     }
   }
 
-  /// Rayleigh time pi R sqrt(rho / G) / (0.1631 nu + 0.8766) of the smallest grain.
   void time_step() const {
     ContactSettings const& contact = c_.contact;
     if (!distribution_known() || !known({"contact.time_step_fraction", "contact.youngs_modulus",
                                          "contact.poisson_ratio", "material.density", "run.unsafe_time_step"})) {
       return;
     }
-    double const shear_modulus = contact.youngs_modulus / (2 * (1 + contact.poisson_ratio));
-    double const rayleigh_time = pi * 0.5 * smallest() * std::sqrt(c_.material.density / shear_modulus) /
-                                 (0.1631 * contact.poisson_ratio + 0.8766);
+    double const limit = rayleigh_time(0.5 * smallest(), c_.material.density, contact);
     if (contact.time_step_fraction > 0.15 && !c_.run.unsafe_time_step) {
       report(
           "contact.time_step_fraction",
           "= {:g} (time step {} is above the stable limit: 0.15 of the Rayleigh time, {}, of a grain of {}) lower it, "
           "or set run.unsafe_time_step = true to see the guards stop the run",
-          contact.time_step_fraction, format_quantity(contact.time_step_fraction * rayleigh_time, Dimension::time),
-          format_quantity(rayleigh_time, Dimension::time), length(smallest()));
+          contact.time_step_fraction, format_quantity(contact.time_step_fraction * limit, Dimension::time),
+          format_quantity(limit, Dimension::time), length(smallest()));
     }
   }
 

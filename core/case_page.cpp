@@ -32,8 +32,10 @@ std::string default_column(CaseKey const& row) {
       return row.table == "material" ? "built-in" : "required";
     case Need::with_laser:
       return row.table == "material" ? "built-in" : "required (not with `frozen_zone`)";
-    case Need::with_cohesion:
-      return "required with cohesion";
+    case Need::with_energy_density:
+      return "required with `sjkr`, `sjkr2`";
+    case Need::with_surface_energy:
+      return "required with `jkr`, `dmt`";
     case Need::never:
       return "none";
   }

@@ -67,15 +67,28 @@ std::vector<CaseKey> powder_rows() {
        "Poisson's ratio of a grain."},
       {"contact", "restitution", at<contact, &C::restitution>, D::none, {0.01, 1}, Need::always, "",
        "Coefficient of restitution: speed after over speed before a head-on impact."},
+      {"contact", "restitution_form", choice<contact, &C::restitution_form>({"exact", "clamped"}),
+       D::none, {}, Need::never, "\"exact\"",
+       "Whether damping may pull before separation (`exact`: the restitution is as given) or not (`clamped`)."},
       {"contact", "sliding_friction", at<contact, &C::sliding_friction>, D::none, {0, 5}, Need::always, "",
        "Coulomb friction between grains."},
+      {"contact", "sliding_spring", choice<contact, &C::sliding_spring>({"rescaled", "kept"}),
+       D::none, {}, Need::never, "\"rescaled\"",
+       "Tangential spring of a contact that slides: shortened to the Coulomb bound, or kept."},
       {"contact", "rolling_friction", at<contact, &C::rolling_friction>, D::none, {0, 5}, Need::always, "",
-       "Rolling friction between grains (constant directional torque)."},
-      {"contact", "cohesion", choice<contact, &C::cohesion>({"none", "sjkr2"}), D::none, {}, Need::never, "\"sjkr2\"",
-       "Cohesion law; `sjkr2`: energy density times the contact area 4 pi R* overlap."},
+       "Rolling friction of grains on grains and walls."},
+      {"contact", "rolling_model", choice<contact, &C::rolling_model>({"cdt", "epsd2"}),
+       D::none, {}, Need::never, "\"cdt\"",
+       "Rolling friction as a constant directional torque (`cdt`) or as a spring cut at that torque (`epsd2`)."},
+      {"contact", "cohesion", choice<contact, &C::cohesion>({"none", "sjkr", "sjkr2", "jkr", "dmt"}),
+       D::none, {}, Need::never, "\"sjkr2\"",
+       "Cohesion law; `sjkr2`: energy density times the area 4 pi R* overlap; `sjkr`: half of it; `jkr`, `dmt`: from `surface_energy`."},
       {"contact", "cohesion_energy_density", at<contact, &C::cohesion_energy_density>,
-       D::energy_density, {0, 1e9}, Need::with_cohesion, "",
-       "Cohesion energy density of `sjkr2`; belongs to one Young's modulus."},
+       D::energy_density, {0, 1e9}, Need::with_energy_density, "",
+       "Cohesion energy density of `sjkr` and `sjkr2`; belongs to one Young's modulus."},
+      {"contact", "surface_energy", at<contact, &C::surface_energy>,
+       D::surface_energy, {0, 10}, Need::with_surface_energy, "",
+       "Surface energy of `jkr` and `dmt`: the work of adhesion of two surfaces is twice that."},
       {"contact", "wall_friction", at<contact, &C::wall_friction>,
        D::none, {0, 5}, Need::never, "=contact.sliding_friction",
        "Coulomb friction between grains and platforms, blade and part."},
@@ -287,8 +300,10 @@ bool is_needed(CaseKey const& row, Case const& c) {
       return true;
     case Need::with_laser:
       return !c.machine.frozen_zone;
-    case Need::with_cohesion:
-      return c.contact.cohesion != Cohesion::none;
+    case Need::with_energy_density:
+      return c.contact.cohesion == Cohesion::sjkr || c.contact.cohesion == Cohesion::sjkr2;
+    case Need::with_surface_energy:
+      return c.contact.cohesion == Cohesion::jkr || c.contact.cohesion == Cohesion::dmt;
     case Need::never:
       return false;
   }

@@ -26,7 +26,8 @@ struct Range {
 enum class Need {
   always,
   with_laser,     ///< unless machine.frozen_zone takes the laser's place
-  with_cohesion,  ///< unless contact.cohesion is "none"
+  with_energy_density,  ///< with contact.cohesion "sjkr" or "sjkr2"
+  with_surface_energy,  ///< with contact.cohesion "jkr" or "dmt"
   never
 };
 

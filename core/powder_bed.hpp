@@ -13,6 +13,7 @@ struct ContactSpring {
   std::int64_t key_a;
   std::int64_t key_b;
   std::array<double, 3> spring;  ///< tangential displacement [m]
+  std::array<double, 3> turn{};  ///< rolling angle that is stored [rad]; 0 without a rolling spring
 };
 
 /// All grains of a run as a structure of arrays, in ascending order of id. Plain data: every rank holds the same copy

@@ -55,6 +55,8 @@ constexpr auto units = std::to_array<Unit>({
     {"kPa", D::pressure, 1e3L},
     {"MPa", D::pressure, 1e6L},
     {"GPa", D::pressure, 1e9L},
+    {"J/m2", D::surface_energy, 1},
+    {"mJ/m2", D::surface_energy, 1e-3L},
     {"J/m3", D::energy_density, 1},
     {"kJ/m3", D::energy_density, 1e3L},
     {"MJ/m3", D::energy_density, 1e6L},
@@ -124,6 +126,8 @@ std::string_view name(Dimension dimension) {
       return "a density";
     case D::pressure:
       return "a pressure";
+    case D::surface_energy:
+      return "an energy per area";
     case D::energy_density:
       return "an energy per volume";
     case D::power:

@@ -14,6 +14,7 @@ enum class Dimension {
   density,
   pressure,
   energy_density,
+  surface_energy,
   power,
   temperature,
   angle,

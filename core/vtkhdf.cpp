@@ -100,13 +100,15 @@ void write_bed_group(Hdf5Writer& file, PowderBed const& bed) {
   file.write("/bed/material", std::span<std::int32_t const>(bed.material), {n});
 
   std::vector<std::int64_t> keys;
-  std::vector<double> springs;
+  std::vector<double> springs, turns;
   for (ContactSpring const& contact : bed.contacts) {
     keys.insert(keys.end(), {contact.key_a, contact.key_b});
     springs.insert(springs.end(), contact.spring.begin(), contact.spring.end());
+    turns.insert(turns.end(), contact.turn.begin(), contact.turn.end());
   }
   file.write("/bed/contact_keys", std::span<std::int64_t const>(keys), {bed.contacts.size(), 2});
   file.write("/bed/contact_spring", std::span<double const>(springs), {bed.contacts.size(), 3}, "m");
+  file.write("/bed/contact_turn", std::span<double const>(turns), {bed.contacts.size(), 3}, "rad");
 }
 
 PowderBed read_bed_group(Hdf5Reader const& file) {
@@ -118,16 +120,21 @@ PowderBed read_bed_group(Hdf5Reader const& file) {
   bed.radius = file.read_doubles("/bed/radius");
   bed.material = file.read_int32("/bed/material");
   std::vector<std::int64_t> const keys = file.read_int64("/bed/contact_keys");
-  std::vector<double> const springs = file.read_doubles("/bed/contact_spring");
+  std::vector<double> const springs = file.read_doubles("/bed/contact_spring"),
+                            turns = file.read_doubles("/bed/contact_turn");
 
   std::size_t const n = bed.size(), contacts = keys.size() / 2;
   bool const whole = bed.x.size() == n && bed.vx.size() == n && bed.wx.size() == n && bed.radius.size() == n &&
-                     bed.material.size() == n && keys.size() == 2 * contacts && springs.size() == 3 * contacts;
+                     bed.material.size() == n && keys.size() == 2 * contacts && springs.size() == 3 * contacts &&
+                     turns.size() == 3 * contacts;
   bool const ascending = std::adjacent_find(bed.id.begin(), bed.id.end(), std::greater_equal<>{}) == bed.id.end();
   if (!whole || !ascending)
     throw FileError("group /bed is damaged (its datasets do not belong together); go back to an earlier file");
   for (std::size_t c = 0; c < contacts; ++c)
-    bed.contacts.push_back({keys[2 * c], keys[2 * c + 1], {springs[3 * c], springs[3 * c + 1], springs[3 * c + 2]}});
+    bed.contacts.push_back({keys[2 * c],
+                            keys[2 * c + 1],
+                            {springs[3 * c], springs[3 * c + 1], springs[3 * c + 2]},
+                            {turns[3 * c], turns[3 * c + 1], turns[3 * c + 2]}});
   return bed;
 }
 

@@ -17,22 +17,36 @@ double reduced_shear_modulus(ContactSettings const& contact) {
 
 double grain_mass(double radius, double density) { return 4.0 / 3.0 * pi * radius * radius * radius * density; }
 
-/// \param area  contact area / (R d)
+bool has_energy_density(ContactSettings const& contact) {
+  return contact.cohesion == Cohesion::sjkr || contact.cohesion == Cohesion::sjkr2;
+}
+
+/// \param area  contact area of sjkr2 / (R d); sjkr has half of it
 ContactLaw law_between(ContactSettings const& contact, double friction, double area) {
   double const E = reduced_youngs_modulus(contact), G = reduced_shear_modulus(contact);
   double const log_e = std::log(contact.restitution);
   double const damping = -2 * std::sqrt(5.0 / 6.0) * log_e / std::sqrt(log_e * log_e + pi * pi);
-  double const cohesion = contact.cohesion == Cohesion::none ? 0.0 : contact.cohesion_energy_density * area;
-  return {.normal_stiffness = 4.0 / 3.0 * E,
-          .tangential_stiffness = 8 * G,
-          .normal_damping = damping * std::sqrt(2 * E),
-          .tangential_damping = damping * std::sqrt(8 * G),
-          .sliding_friction = friction,
-          .rolling_friction = contact.rolling_friction,
-          .cohesion = cohesion,
-          .cohesion_in_coulomb = contact.coulomb_on == CoulombOn::total ? cohesion : 0.0};
+  double const work = 2 * contact.surface_energy;
+  ContactLaw law{.normal_stiffness = 4.0 / 3.0 * E,
+                 .tangential_stiffness = 8 * G,
+                 .normal_damping = damping * std::sqrt(2 * E),
+                 .tangential_damping = damping * std::sqrt(8 * G),
+                 .sliding_friction = friction,
+                 .rolling_friction = contact.rolling_friction,
+                 .adhesion_in_coulomb = contact.coulomb_on == CoulombOn::total ? 1.0 : 0.0,
+                 .keeps_spring = contact.sliding_spring == SlidingSpring::kept ? 1.0 : 0.0};
+  if (has_energy_density(contact))
+    law.cohesion = contact.cohesion_energy_density * (contact.cohesion == Cohesion::sjkr ? 0.5 : 1.0) * area;
+  if (contact.cohesion == Cohesion::dmt) law.pull_off = 2 * pi * work;
+  if (contact.cohesion == Cohesion::jkr) law.adhesion = std::sqrt(2 * pi * work / E);
+  if (contact.restitution_form == RestitutionForm::clamped) law.least_normal = 0;
+  return law;
 }
 }  // namespace
+
+LawForm law_form(ContactSettings const& contact) {
+  return {.jkr = contact.cohesion == Cohesion::jkr, .rolling = contact.rolling_model};
+}
 
 ContactLaw grain_law(ContactSettings const& contact) { return law_between(contact, contact.sliding_friction, 4 * pi); }
 
@@ -41,21 +55,23 @@ ContactLaw wall_law(ContactSettings const& contact) {
   return law_between(contact, contact.wall_friction, area);
 }
 
-double rayleigh_time(double radius, double density, ContactSettings const& contact) {
-  double const shear_modulus = contact.youngs_modulus / (2 * (1 + contact.poisson_ratio));
-  return pi * radius * std::sqrt(density / shear_modulus) / (0.1631 * contact.poisson_ratio + 0.8766);
-}
-
 double hertz_contact_time(double radius, double density, double speed, ContactSettings const& contact) {
   double const mass = grain_mass(radius, density) / 2, E = reduced_youngs_modulus(contact);
   return 2.868 * std::pow(mass * mass / (radius / 2 * E * E * speed), 0.2);
 }
 
 double bond_number(double radius, double density, ContactSettings const& contact) {
-  if (contact.cohesion == Cohesion::none) return 0;
-  double const k = contact.cohesion_energy_density, R = radius / 2, E = reduced_youngs_modulus(contact);
-  double const pull_off = 16 * pi * pi * pi / 3 * k * k * k * R * R / (E * E);
+  double const R = radius / 2, E = reduced_youngs_modulus(contact), work = 2 * contact.surface_energy;
+  double const k = contact.cohesion_energy_density * (contact.cohesion == Cohesion::sjkr ? 0.5 : 1.0);
+  double pull_off = 0;
+  if (has_energy_density(contact)) pull_off = 16 * pi * pi * pi / 3 * k * k * k * R * R / (E * E);
+  if (contact.cohesion == Cohesion::dmt) pull_off = 2 * pi * work * R;
+  if (contact.cohesion == Cohesion::jkr) pull_off = 1.5 * pi * work * R;
   return pull_off / (grain_mass(radius, density) * 9.81);
+}
+
+double tear_off_gap(ContactLaw const& law, double reduced_radius) {
+  return 0.75 * law.adhesion * std::cbrt(law.adhesion * reduced_radius / 4);
 }
 
 }  // namespace layerloop::dem

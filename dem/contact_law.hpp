@@ -5,53 +5,73 @@
 
 namespace layerloop::dem {
 
-/// Hertz-Mindlin contact with history, restitution-exact damping, SJKR2 cohesion and CDT rolling friction, as
-/// prefactors.
+/// Hertz-Mindlin contact with history and restitution-exact damping, as prefactors, and what is added to it.
 ///
-/// With the overlap d, the reduced radius R and mass m, and root = sqrt(R d):
-///   normal      4/3 E root d - g_n v_n - k A,        1/E = sum (1 - nu^2)/E_i      (k: cohesion energy density, A:
-///   contact area) tangential  -(8 G root s + g_t v_t), cut at the Coulomb bound;  1/G = sum 2 (2 - nu)(1 + nu)/E_i
-///   damping     g_n = -2 sqrt(5/6) b sqrt(2 E root m), g_t with 8 G in place of 2 E;  b = ln e / sqrt(ln^2 e + pi^2)
-///   rolling     torque mu_r R (4/3 E root d) against the relative rotation, without its torsional part
-/// The normal force is not cut at zero before separation: then the restitution is e exactly at any speed (Antypov &
-/// Elliott, EPL 94 (2011) 50004). A sliding contact rescales its spring to the bound and drops tangential damping.
-/// Forms as in LIGGGHTS
-/// (`hertz tangential history rolling_friction cdt cohesion sjkr2`); cdt is model A of Ai et al., Powder Technol. 206
-/// (2011) 269. Velocities come half a step late (leapfrog): under a force K + g v that acts as if the mass were m - g
-/// dt/2 and damps too much by the share g dt/(4 m). Normal damping is reduced by it, so that the restitution is of
-/// second order in the step. Walls are of the grains' material: both bodies deform, R is the radius and m the mass of
-/// the grain.
+/// With the overlap d, the reduced radius R and mass m, and the contact radius a = sqrt(R d) (JKR: from d, below):
+///   normal      4/3 E a d - g_n v_n - attraction,    1/E = sum (1 - nu^2)/E_i
+///   tangential  -(8 G a s + g_t v_t), cut at the Coulomb bound;  1/G = sum 2 (2 - nu)(1 + nu)/E_i
+///   damping     g_n = -2 sqrt(5/6) b sqrt(2 E a m), g_t with 8 G in place of 2 E;  b = ln e / sqrt(ln^2 e + pi^2)
+///   rolling     cdt: torque mu_r R (4/3 E a d) against the relative rotation, without its torsional part;
+///               epsd2: a spring of stiffness 8 G a R^2, cut at the same torque
+/// `exact`: the normal force is not cut at zero before separation; then the restitution is e at any speed (Antypov &
+/// Elliott, EPL 94 (2011) 50004). `clamped`: it is. A sliding contact drops tangential damping and rescales its spring
+/// to the bound, or keeps it. Attraction: sjkr and sjkr2, energy density k times a contact area; dmt, 2 pi W R while
+/// touching (Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53 (1975) 314); jkr (Johnson, Kendall & Roberts,
+/// Proc. R. Soc. A 324 (1971) 301), with W = 2 gamma. Forms of Hertz-Mindlin, sjkr, sjkr2, cdt and epsd2 as in
+/// LIGGGHTS; cdt and epsd2: Ai et al., Powder Technol. 206 (2011) 269. Velocities come half a step late (leapfrog):
+/// under a force K + g v that acts as if the mass were m - g dt/2 and damps too much by the share g dt/(4 m). Normal
+/// damping is reduced by it, so that the restitution is of second order in the step.
 struct ContactLaw {
   double normal_stiffness = 0;      ///< 4/3 E [Pa]
   double tangential_stiffness = 0;  ///< 8 G [Pa]
-  double normal_damping = 0;        ///< g_n / sqrt(m root) [sqrt(Pa)]
-  double tangential_damping = 0;    ///< g_t / sqrt(m root) [sqrt(Pa)]
+  double normal_damping = 0;        ///< g_n / sqrt(m a) [sqrt(Pa)]
+  double tangential_damping = 0;    ///< g_t / sqrt(m a) [sqrt(Pa)]
   double sliding_friction = 0;
   double rolling_friction = 0;
-  double cohesion = 0;             ///< attraction / (R d) [Pa]
-  double cohesion_in_coulomb = 0;  ///< the same where the Coulomb bound takes the total normal force, else 0
+  double cohesion = 0;             ///< sjkr, sjkr2: attraction / (R d) [Pa]
+  double pull_off = 0;             ///< dmt: attraction / R, 2 pi W [N/m]
+  double adhesion = 0;             ///< jkr: c = sqrt(2 pi W / E) in d = a^2/R - c sqrt(a) [sqrt(m)]
+  double adhesion_in_coulomb = 0;  ///< 1 where the Coulomb bound takes the total normal force, else 0
+  double least_normal = -1e300;    ///< normal force before attraction is at least this: 0 when clamped [N]
+  double keeps_spring = 0;         ///< 1 where a sliding contact keeps its spring, 0 where it rescales it
 };
 
-/// Two grains: A = 2 pi d (2 R), thesis eq. 6.
+/// Which code a contact needs, beyond prefactors: chosen once, outside the loops.
+struct LawForm {
+  bool jkr = false;  ///< attraction acts beyond touch, and the contact radius is not sqrt(R d)
+  RollingModel rolling = RollingModel::cdt;
+  friend bool operator==(LawForm const&, LawForm const&) = default;
+};
+LawForm law_form(ContactSettings const& contact);
+
+/// Elastic and surface properties of one of two bodies in contact.
+struct Body {
+  double youngs_modulus, poisson_ratio;
+};
+
+/// Two grains. sjkr2: A = 2 pi d (2 R), thesis eq. 6; sjkr: half of it.
 ContactLaw grain_law(ContactSettings const& contact);
 /// Grain and wall: wall friction; A = 2 pi R d (liggghts) or 4 pi R d (eq6).
 ContactLaw wall_law(ContactSettings const& contact);
 
-/// Time of a Rayleigh wave over a grain: pi R sqrt(rho/G) / (0.1631 nu + 0.8766) [s], thesis eq. 12.
-double rayleigh_time(double radius, double density, ContactSettings const& contact);
 /// Duration of an undamped Hertz impact of two equal grains at a relative speed: 2.868 (m^2 / (R E^2 v))^(1/5) [s].
 double hertz_contact_time(double radius, double density, double speed, ContactSettings const& contact);
-/// Pull-off force of SJKR2 over weight, for two equal grains: (16 pi^3/3) k^3 R^2 / E^2 / (m g).
+/// Pull-off force over weight, for two equal grains. sjkr, sjkr2: (16 pi^3/3) k^3 R^2 / E^2 (sjkr: 1/8 of it);
+/// dmt: 2 pi W R; jkr: 3/2 pi W R.
 double bond_number(double radius, double density, ContactSettings const& contact);
+/// Largest gap at which a contact still holds [m]: 0 but for jkr, where it tears at 3/4 (pi^2 W^2 R / E^2)^(1/3).
+double tear_off_gap(ContactLaw const& law, double reduced_radius);
 
-/// Geometry and motion of one touching pair. The normal points from the second body to the first.
+/// Geometry and motion of one pair. The normal points from the second body to the first.
 struct ContactState {
-  double overlap, radius, mass;  ///< d, R, m
+  double overlap, radius, inverse_mass;  ///< d (negative: apart), R, 1/m
   double nx, ny, nz;
   double vx, vy, vz;  ///< velocity of the first centre relative to the second [m/s]
   double sx, sy, sz;  ///< surface rotation: arm_1 w_1 + arm_2 w_2 [m/s], arm = radius - d/2
   double wx, wy, wz;  ///< spin of the first relative to the second [rad/s]
   double spring_x, spring_y, spring_z;
+  double turn_x, turn_y, turn_z;  ///< epsd2: rolling angle that is stored [rad]
+  bool was_touching;
 };
 
 /// What a contact does to the first body; the second gets -force, and the torque with its own arm and +rolling.
@@ -60,19 +80,55 @@ struct ContactAction {
   double qx, qy, qz;  ///< normal x tangential force; torque is -arm q on either body [N]
   double rx, ry, rz;  ///< rolling torque, taken from the first body [N m]
   double spring_x, spring_y, spring_z;
+  double turn_x, turn_y, turn_z;
+  bool touches;
 };
 
+/// Contact radius and forces along the normal, before damping.
+struct NormalForce {
+  double contact_radius, elastic, attraction;
+  bool touches;
+};
+
+[[gnu::always_inline]] inline NormalForce hertz(ContactLaw const& law, ContactState const& c) {
+  double const overlap = c.overlap > 0.0 ? c.overlap : 0.0, area = c.radius * overlap;
+  double const a = std::sqrt(area);
+  bool const touches = c.overlap > 0.0;
+  return {a, law.normal_stiffness * a * overlap, law.cohesion * area + (touches ? law.pull_off * c.radius : 0.0),
+          touches};
+}
+
+/// Newton's iteration for b = sqrt(a) in b^4/R - c b = d, from above, where it converges monotonically to the stable
+/// branch; a contact forms at d = 0 and tears where that branch ends.
+[[gnu::always_inline]] inline NormalForce jkr(ContactLaw const& law, ContactState const& c) {
+  double const cR = law.adhesion * c.radius, overlap = c.overlap > 0.0 ? c.overlap : 0.0;
+  double y = std::sqrt(std::sqrt(cR)) + cR + 1e-9;  // above the cube root of cR, which is less than 1
+  for (int i = 0; i < 12; ++i) y -= (y * y * y - cR) / (3 * y * y);
+  double const tear = 0.75 * 0.6299605249474366 * law.adhesion * y;  // 4^(-1/3) y: where the branch ends
+  bool const touches = c.overlap > 0.0 || (c.was_touching && c.overlap > -tear);
+  double const reached = touches ? c.overlap : 0.0;
+  double b = std::sqrt(std::sqrt(c.radius * overlap)) + y;
+  for (int i = 0; i < 10; ++i) {
+    double const cube = b * b * b;
+    b -= (cube * b - cR * b - c.radius * reached) / (4 * cube - cR);
+  }
+  double const a = touches ? b * b : 0.0, E = 0.75 * law.normal_stiffness;
+  double const a3 = a * a * a;
+  // sqrt(8 pi W E) a^(3/2) with W = E c^2 / (2 pi)
+  return {a, law.normal_stiffness * a3 / c.radius, 2 * E * law.adhesion * std::sqrt(a3), touches};
+}
+
 /// Straight-line code without branches, so that a loop over contacts becomes vector instructions.
+template <bool is_jkr, RollingModel rolling_model>
 [[gnu::always_inline]] inline ContactAction act(ContactLaw const& law, ContactState const& c, double dt) {
-  double const root = std::sqrt(c.radius * c.overlap);
-  double const viscous = std::sqrt(c.mass * root);
-  double const elastic = law.normal_stiffness * root * c.overlap;
-  double const adhesive = c.radius * c.overlap;
+  NormalForce const along = is_jkr ? jkr(law, c) : hertz(law, c);
+  double const a = along.contact_radius, viscous = std::sqrt(a / c.inverse_mass);
 
   double const vn = c.vx * c.nx + c.vy * c.ny + c.vz * c.nz;
   double const viscosity_n = law.normal_damping * viscous;
-  double const repulsive = elastic - viscosity_n * vn * c.mass / (c.mass + 0.25 * dt * viscosity_n);
-  double const normal = repulsive - law.cohesion * adhesive;
+  double const damped = along.elastic - viscosity_n * vn / (1.0 + 0.25 * dt * viscosity_n * c.inverse_mass);
+  double const repulsive = damped > law.least_normal ? damped : law.least_normal;
+  double const normal = repulsive - along.attraction;
 
   double const tx = c.vx - vn * c.nx - (c.sy * c.nz - c.sz * c.ny);
   double const ty = c.vy - vn * c.ny - (c.sz * c.nx - c.sx * c.nz);
@@ -83,34 +139,54 @@ struct ContactAction {
   uy -= un * c.ny;
   uz -= un * c.nz;
 
-  double const stiffness = law.tangential_stiffness * root;
-  double const bound = law.sliding_friction * std::abs(repulsive - law.cohesion_in_coulomb * adhesive);
+  double const stiffness = law.tangential_stiffness * a;
+  double const bound = law.sliding_friction * std::abs(repulsive - law.adhesion_in_coulomb * along.attraction);
   double const stretched = stiffness * std::sqrt(ux * ux + uy * uy + uz * uz);
   bool const slides = stretched > bound;
-  double const kept = slides ? bound / stretched : 1.0;
+  double const carried = slides ? bound / stretched : 1.0;
   double const viscosity = slides ? 0.0 : law.tangential_damping * viscous;
-  ux *= kept;
-  uy *= kept;
-  uz *= kept;
-  double const gx = -(stiffness * ux + viscosity * tx);
-  double const gy = -(stiffness * uy + viscosity * ty);
-  double const gz = -(stiffness * uz + viscosity * tz);
+  double const pull = stiffness * carried;
+  double const gx = -(pull * ux + viscosity * tx);
+  double const gy = -(pull * uy + viscosity * ty);
+  double const gz = -(pull * uz + viscosity * tz);
+  double const kept = along.touches ? (law.keeps_spring > 0.0 ? 1.0 : carried) : 0.0;
 
-  double const spin = std::sqrt(c.wx * c.wx + c.wy * c.wy + c.wz * c.wz);
-  double const rolling = law.rolling_friction * c.radius * elastic / (spin > 0.0 ? spin : 1.0);
+  ContactAction action;
+  action.fx = normal * c.nx + gx;
+  action.fy = normal * c.ny + gy;
+  action.fz = normal * c.nz + gz;
+  action.qx = c.ny * gz - c.nz * gy;
+  action.qy = c.nz * gx - c.nx * gz;
+  action.qz = c.nx * gy - c.ny * gx;
+  action.spring_x = kept * ux;
+  action.spring_y = kept * uy;
+  action.spring_z = kept * uz;
+  action.touches = along.touches;
+
+  double const most = law.rolling_friction * c.radius * along.elastic;
   double const wn = c.wx * c.nx + c.wy * c.ny + c.wz * c.nz;
-  return {normal * c.nx + gx,
-          normal * c.ny + gy,
-          normal * c.nz + gz,
-          c.ny * gz - c.nz * gy,
-          c.nz * gx - c.nx * gz,
-          c.nx * gy - c.ny * gx,
-          rolling * (c.wx - wn * c.nx),
-          rolling * (c.wy - wn * c.ny),
-          rolling * (c.wz - wn * c.nz),
-          ux,
-          uy,
-          uz};
+  double const ox = c.wx - wn * c.nx, oy = c.wy - wn * c.ny, oz = c.wz - wn * c.nz;
+  if constexpr (rolling_model == RollingModel::cdt) {
+    double const spin = std::sqrt(c.wx * c.wx + c.wy * c.wy + c.wz * c.wz);
+    double const rolling = most / (spin > 0.0 ? spin : 1.0);
+    action.rx = rolling * ox;
+    action.ry = rolling * oy;
+    action.rz = rolling * oz;
+    action.turn_x = action.turn_y = action.turn_z = 0.0;
+  } else {
+    double const px = c.turn_x + ox * dt, py = c.turn_y + oy * dt, pz = c.turn_z + oz * dt;
+    double const along_n = px * c.nx + py * c.ny + pz * c.nz;
+    double const qx = px - along_n * c.nx, qy = py - along_n * c.ny, qz = pz - along_n * c.nz;
+    double const spring = stiffness * c.radius * c.radius, torque = spring * std::sqrt(qx * qx + qy * qy + qz * qz);
+    double const share = torque > most ? most / torque : 1.0, left = along.touches ? share : 0.0;
+    action.turn_x = left * qx;
+    action.turn_y = left * qy;
+    action.turn_z = left * qz;
+    action.rx = spring * share * qx;
+    action.ry = spring * share * qy;
+    action.rz = spring * share * qz;
+  }
+  return action;
 }
 
 }  // namespace layerloop::dem

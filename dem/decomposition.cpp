@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace layerloop::dem {
 namespace {
-constexpr std::size_t state_values = 9;  // position, velocity, spin
-
-std::array<std::vector<double> Grains::*, state_values> constexpr state{
-    &Grains::x, &Grains::y, &Grains::z, &Grains::vx, &Grains::vy, &Grains::vz, &Grains::wx, &Grains::wy, &Grains::wz};
-
 /// Sends to_rank[r] to rank r.
 /// \return what came in, by rank
 template <class T>
@@ -48,17 +43,17 @@ std::vector<T> joined(std::vector<std::vector<T>> const& parts) {
 }
 
 /// Borders of slices with equal numbers of grains.
-std::vector<double> equal_cuts(std::vector<double> x, std::size_t slices) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+std::vector<double> equal_cuts(std::vector<double> x, std::size_t slices, double period) {
   std::ranges::sort(x);
-  std::vector<double> cuts(slices + 1, infinity);
-  cuts.front() = -infinity;
+  std::vector<double> cuts(slices + 1, period);
+  cuts.front() = std::isfinite(period) ? 0.0 : -period;
   for (std::size_t r = 1; r < slices && !x.empty(); ++r) cuts[r] = x[r * x.size() / slices];
   return cuts;
 }
 }  // namespace
 
-Decomposition::Decomposition(Communicator const& communicator) : communicator_(communicator) {
+Decomposition::Decomposition(Communicator const& communicator, double period)
+    : communicator_(communicator), period_(period) {
   MPI_Comm node;
   MPI_Comm_split_type(communicator.handle(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
   MPI_Comm_size(node, &ranks_on_node_);
@@ -74,14 +69,15 @@ void Decomposition::redistribute(std::vector<GrainRecord>& grains, std::vector<L
   }
   auto const ranks = static_cast<std::size_t>(size());
   std::vector<double> x(grains.size());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = grains[i].x;
-  cuts_ = equal_cuts(communicator_.all_gather(x), ranks);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = grains[i].state.x;
+  cuts_ = equal_cuts(communicator_.all_gather(x), ranks, period_);
 
   std::vector<std::size_t> target(grains.size());
   std::vector<std::vector<GrainRecord>> grains_to(ranks);
   std::vector<std::vector<ContactSpring>> springs_to(ranks);
   for (std::size_t i = 0; i < grains.size(); ++i) {
-    target[i] = static_cast<std::size_t>(std::upper_bound(cuts_.begin(), cuts_.end(), grains[i].x) - cuts_.begin()) - 1;
+    target[i] =
+        static_cast<std::size_t>(std::upper_bound(cuts_.begin(), cuts_.end(), grains[i].state.x) - cuts_.begin()) - 1;
     grains_to[target[i]].push_back(grains[i]);
   }
   for (LocalSpring const& old : old_springs) {
@@ -95,7 +91,7 @@ void Decomposition::redistribute(std::vector<GrainRecord>& grains, std::vector<L
   sort_springs(springs);
 }
 
-void Decomposition::add_ghosts(Grains& grains, double reach, double density) {
+void Decomposition::add_ghosts(Grains& grains, double reach) {
   if (size() == 1) return;
   auto const ranks = static_cast<std::size_t>(size());
   sent_rows_.assign(ranks, {});
@@ -103,7 +99,7 @@ void Decomposition::add_ghosts(Grains& grains, double reach, double density) {
   for (std::size_t r = 0; r < ranks; ++r) {
     if (static_cast<int>(r) == communicator_.rank()) continue;
     for (std::size_t i = 0; i < grains.owned; ++i) {
-      if (grains.x[i] < cuts_[r] - reach || grains.x[i] > cuts_[r + 1] + reach) continue;
+      if (!is_within(grains[i].x, cuts_[r] - reach, cuts_[r + 1] + reach)) continue;
       sent_rows_[r].push_back(static_cast<std::int32_t>(i));
       to_rank[r].push_back(grains.record(i));
     }
@@ -112,40 +108,44 @@ void Decomposition::add_ghosts(Grains& grains, double reach, double density) {
   received_.clear();
   std::size_t sent = 0, received = 0;
   for (std::size_t r = 0; r < ranks; ++r) {
-    for (GrainRecord const& record : from_rank[r]) grains.push_back(record, density);
+    for (GrainRecord const& record : from_rank[r]) grains.push_back(record);
     received_.push_back(from_rank[r].size());
     received += from_rank[r].size();
     sent += to_rank[r].size();
   }
-  send_buffer_.resize(sent * state_values);
-  receive_buffer_.resize(received * state_values);
+  send_buffer_.resize(sent);
+  receive_buffer_.resize(received);
   requests_.reserve(2 * ranks);
 }
 
 void Decomposition::update_ghosts(Grains& grains) {
   if (size() == 1) return;
   requests_.clear();
-  double* in = receive_buffer_.data();
-  double* out = send_buffer_.data();
+  GrainState* in = receive_buffer_.data();
+  GrainState* out = send_buffer_.data();
+  constexpr std::size_t values = sizeof(GrainState) / sizeof(double);
   for (std::size_t r = 0; r < received_.size(); ++r) {
     if (received_[r] == 0) continue;
-    auto const count = static_cast<int>(received_[r] * state_values);
-    MPI_Irecv(in, count, MPI_DOUBLE, static_cast<int>(r), 0, communicator_.handle(), &requests_.emplace_back());
-    in += count;
+    MPI_Irecv(in, static_cast<int>(received_[r] * values), MPI_DOUBLE, static_cast<int>(r), 0, communicator_.handle(),
+              &requests_.emplace_back());
+    in += received_[r];
   }
   for (std::size_t r = 0; r < sent_rows_.size(); ++r) {
     if (sent_rows_[r].empty()) continue;
-    double* at = out;
-    for (std::int32_t const row : sent_rows_[r])
-      for (auto const member : state) *at++ = (grains.*member)[static_cast<std::size_t>(row)];
-    MPI_Isend(out, static_cast<int>(at - out), MPI_DOUBLE, static_cast<int>(r), 0, communicator_.handle(),
-              &requests_.emplace_back());
+    GrainState* at = out;
+    for (std::int32_t const row : sent_rows_[r]) *at++ = grains[static_cast<std::size_t>(row)];
+    MPI_Isend(out, static_cast<int>(sent_rows_[r].size() * values), MPI_DOUBLE, static_cast<int>(r), 0,
+              communicator_.handle(), &requests_.emplace_back());
     out = at;
   }
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-  double const* at = receive_buffer_.data();
-  for (std::size_t row = grains.owned; row < grains.size(); ++row)
-    for (auto const member : state) (grains.*member)[row] = *at++;
+  std::ranges::copy(receive_buffer_, grains.state.begin() + static_cast<std::ptrdiff_t>(grains.owned));
+}
+
+bool Decomposition::is_within(double x, double low, double high) const {
+  if (x >= low && x <= high) return true;
+  return std::isfinite(period_) &&
+         ((x + period_ >= low && x + period_ <= high) || (x - period_ >= low && x - period_ <= high));
 }
 
 }  // namespace layerloop::dem

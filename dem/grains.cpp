@@ -11,31 +11,35 @@ std::pair<std::int64_t, std::int64_t> keys(ContactSpring const& spring) { return
 
 void Grains::clear() {
   owned = 0;
+  state.clear();
   id.clear();
-  material.clear();
-  leaves.clear();
-  for (auto* values : {&x, &y, &z, &vx, &vy, &vz, &wx, &wy, &wz, &radius, &mass}) values->clear();
+  for (auto* values : {&material, &leaves, &quiet}) values->clear();
 }
 
-void Grains::push_back(GrainRecord const& r, double density) {
+void Grains::push_back(GrainRecord const& r) {
+  state.push_back(r.state);
   id.push_back(r.id);
   material.push_back(r.material);
   leaves.push_back(r.leaves);
-  x.push_back(r.x);
-  y.push_back(r.y);
-  z.push_back(r.z);
-  vx.push_back(r.vx);
-  vy.push_back(r.vy);
-  vz.push_back(r.vz);
-  wx.push_back(r.wx);
-  wy.push_back(r.wy);
-  wz.push_back(r.wz);
-  radius.push_back(r.radius);
-  mass.push_back(4.0 / 3.0 * std::numbers::pi * r.radius * r.radius * r.radius * density);
+  quiet.push_back(r.quiet);
 }
 
-GrainRecord Grains::record(std::size_t i) const {
-  return {id[i], x[i], y[i], z[i], vx[i], vy[i], vz[i], wx[i], wy[i], wz[i], radius[i], material[i], leaves[i]};
+void Grains::close() {
+  state.push_back({1e30, 1e30, 1e30, 1e-6, 0, 0, 0, 1, 0, 0, 0, 1});
+  material.push_back(0);
+  quiet.push_back(0);
+}
+
+GrainRecord Grains::record(std::size_t i) const { return {state[i], id[i], material[i], leaves[i], quiet[i]}; }
+
+GrainRecord record_of(PowderBed const& bed, std::size_t i, double density) {
+  double const r = bed.radius[i], inverse_mass = 1 / (bed.volume(i) * density);
+  return {{bed.x[i], bed.y[i], bed.z[i], r, bed.vx[i], bed.vy[i], bed.vz[i], inverse_mass, bed.wx[i], bed.wy[i],
+           bed.wz[i], inverse_mass / (0.4 * r * r)},
+          bed.id[i],
+          bed.material[i],
+          0,
+          0};
 }
 
 void sort_springs(std::vector<ContactSpring>& springs) {

@@ -20,20 +20,19 @@ constexpr std::int64_t steps_between_looks = 20;
 constexpr std::int64_t steps_between_sink_checks = 500;
 
 std::string place(Grains const& g, std::size_t i) {
-  return fmt::format("x = {:.1f}, y = {:.1f}, z = {:.1f} um", g.x[i] * 1e6, g.y[i] * 1e6, g.z[i] * 1e6);
+  return fmt::format("x = {:.1f}, y = {:.1f}, z = {:.1f} um", g[i].x * 1e6, g[i].y * 1e6, g[i].z * 1e6);
 }
 }  // namespace
 
 bool Simulation::is_inside(std::size_t i) const {
-  return grains_.x[i] > rig_.x_range[0] && grains_.x[i] < rig_.x_range[1] && grains_.z[i] > rig_.z_range[0] &&
-         grains_.z[i] < rig_.z_range[1];
+  GrainState const& g = grains_[i];
+  return g.x > rig_.x_range[0] && g.x < rig_.x_range[1] && g.z > rig_.z_range[0] && g.z < rig_.z_range[1];
 }
 
 Simulation::Watch Simulation::shared_watch() {
   for (std::size_t i = 0; i < grains_.owned; ++i) {
-    double const dx = grains_.x[i] - x_built_[i], dz = grains_.z[i] - z_built_[i];
-    double dy = std::abs(grains_.y[i] - y_built_[i]);
-    dy = std::min(dy, rig_.width - dy);
+    double const dx = wrapped(grains_[i].x - x_built_[i], period_.x),
+                 dy = wrapped(grains_[i].y - y_built_[i], period_.y), dz = grains_[i].z - z_built_[i];
     watch_.displacement_squared = std::max(watch_.displacement_squared, dx * dx + dy * dy + dz * dz);
     if (!is_inside(i)) watch_.broken = 1;
   }
@@ -55,7 +54,7 @@ std::int64_t Simulation::look() {
     next_sink_check_ = steps_ + steps_between_sink_checks;
     std::vector<char> beyond(grains_.owned);
     for (std::size_t i = 0; i < beyond.size(); ++i)
-      beyond[i] = grains_.x[i] > rig_.sink_x || grains_.z[i] > rig_.sink_z;
+      beyond[i] = grains_[i].x > rig_.sink_x || grains_[i].z > rig_.sink_z;
     take_out(beyond);
   }
   Watch const seen = shared_watch();
@@ -105,23 +104,24 @@ template <class Visit>
 void Simulation::for_each_overlap(Visit const& visit) const {
   static std::string const substrate = "the substrate";
   Grains const& g = grains_;
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    auto const i = static_cast<std::size_t>(pairs_.first[k]), j = static_cast<std::size_t>(pairs_.second[k]);
-    double const dx = g.x[i] - g.x[j], dz = g.z[i] - g.z[j], dy = std::remainder(g.y[i] - g.y[j], rig_.width);
-    double const overlap = pairs_.radius_sum[k] - std::sqrt(dx * dx + dy * dy + dz * dz);
-    visit(i, j, overlap * pairs_.inverse_diameter[k], nullptr);
+  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+    auto const i = static_cast<std::size_t>(neighbours_.first[k]), j = static_cast<std::size_t>(neighbours_.second[k]);
+    double const dx = wrapped(g[i].x - g[j].x, period_.x), dy = wrapped(g[i].y - g[j].y, period_.y),
+                 dz = g[i].z - g[j].z;
+    double const overlap = g[i].radius + g[j].radius - std::sqrt(dx * dx + dy * dy + dz * dz);
+    visit(i, j, 0.5 * overlap / std::min(g[i].radius, g[j].radius), nullptr);
   }
   for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w) {
     auto const i = static_cast<std::size_t>(wall_contacts_.grain[w]);
-    auto const relative = [&](double distance) { return (g.radius[i] - distance) / (2 * g.radius[i]); };
+    auto const relative = [&](double distance) { return (g[i].radius - distance) / (2 * g[i].radius); };
     for (std::int32_t b = wall_contacts_.block_begin[w]; b < wall_contacts_.block_begin[w + 1]; ++b) {
       RoundedBlock const& block =
           rig_.walls.blocks[static_cast<std::size_t>(wall_contacts_.blocks[static_cast<std::size_t>(b)])];
-      visit(i, i, relative(nearest(block, block.velocity * time(), g.x[i], g.z[i]).distance), &block.name);
+      visit(i, i, relative(nearest(block, block.velocity * time(), g[i].x, g[i].z).distance), &block.name);
     }
     for (std::int32_t t = wall_contacts_.triangle_begin[w]; t < wall_contacts_.triangle_begin[w + 1]; ++t) {
       std::int32_t const triangle = wall_contacts_.triangles[static_cast<std::size_t>(t)].triangle;
-      visit(i, i, relative(std::abs(contact_with(rig_.walls.substrate, triangle, {g.x[i], g.y[i], g.z[i]}).distance)),
+      visit(i, i, relative(std::abs(contact_with(rig_.walls.substrate, triangle, {g[i].x, g[i].y, g[i].z}).distance)),
             &substrate);
     }
   }
@@ -131,7 +131,7 @@ void Simulation::take_out_nipped() {
   std::vector<char> nipped(grains_.size(), 0);
   for_each_overlap([&](std::size_t i, std::size_t j, double overlap, std::string const*) {
     if (overlap <= nip_limit) return;
-    nipped[grains_.radius[i] <= grains_.radius[j] ? i : j] = 1;  // the first has the lower id
+    nipped[grains_[i].radius <= grains_[j].radius ? i : j] = 1;  // the first has the lower id
   });
   nipped_ += take_out(nipped);
 }
@@ -156,7 +156,8 @@ void Simulation::fail(Fault const& own) {
 Simulation::Fault Simulation::find_lost_grain() const {
   Grains const& g = grains_;
   for (std::size_t i = 0; i < g.owned; ++i) {
-    double const sum = g.x[i] + g.y[i] + g.z[i] + g.vx[i] + g.vy[i] + g.vz[i] + g.wx[i] + g.wy[i] + g.wz[i];
+    GrainState const& at = g[i];
+    double const sum = at.x + at.y + at.z + at.vx + at.vy + at.vz + at.wx + at.wy + at.wz;
     if (!std::isfinite(sum)) {
       return {3, fmt::format(
                      "grain {} has a value that is not finite at t = {:.4g} ms (the motion is unstable) use a smaller "
@@ -171,7 +172,7 @@ Simulation::Fault Simulation::find_lost_grain() const {
               "or a lower machine.recoating_speed if it was thrown out by the blade",
               g.id[i], place(g, i))};
     }
-    if (!(g.vx[i] * g.vx[i] + g.vy[i] * g.vy[i] + g.vz[i] * g.vz[i] < fastest_grain * fastest_grain)) {
+    if (!(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz < fastest_grain * fastest_grain)) {
       return {1, fmt::format("grain {} flies faster than 1 km/s at {} (the motion is unstable) use a smaller "
                              "contact.time_step_fraction",
                              g.id[i], place(g, i))};
@@ -205,7 +206,7 @@ Simulation::Fault Simulation::find_fastest() const {
   double fastest = -1;
   std::size_t grain = 0;
   for (std::size_t i = 0; i < g.owned; ++i) {
-    double const squared = g.vx[i] * g.vx[i] + g.vy[i] * g.vy[i] + g.vz[i] * g.vz[i];
+    double const squared = g[i].vx * g[i].vx + g[i].vy * g[i].vy + g[i].vz * g[i].vz;
     if (squared > fastest) {
       fastest = squared;
       grain = i;

@@ -1,245 +1,341 @@
 #include "dem/pair_contacts.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "dem/lanes.hpp"
 
 namespace layerloop::dem {
 namespace {
 
-/// Rows sorted into cells at least as large as the reach of a pair.
-struct Cells {
-  double x0, z0, size, size_y;
-  std::int32_t nx, ny, nz;
-  std::vector<std::int32_t> begin, rows;
+void clear(NearPairs& near) {
+  near.first.clear();
+  near.second.clear();
+  near.touching.clear();
+  near.dormant.clear();
+  for (auto* values : {&near.spring_x, &near.spring_y, &near.spring_z, &near.turn_x, &near.turn_y, &near.turn_z})
+    values->clear();
+  near.chunk.assign(1, 0);
+  near.far_part.clear();
+  near.far_slots.clear();
+  for (auto* rows : {&near.slot_first, &near.slot_second, &near.far_rows}) rows->clear();
+}
 
-  std::int32_t column(double x) const { return static_cast<std::int32_t>((x - x0) / size); }
-  std::int32_t layer(double z) const { return static_cast<std::int32_t>((z - z0) / size); }
-  std::int32_t strip(double y) const { return std::clamp(static_cast<std::int32_t>(y / size_y), 0, ny - 1); }
-  std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) const {
-    return static_cast<std::size_t>((i * std::int64_t{nz} + k) * ny + j);
+void append(NearPairs& near, std::int32_t first, std::int32_t second, PairSpring const& spring, bool touching,
+            bool has_turn) {
+  near.first.push_back(first);
+  near.second.push_back(second);
+  near.spring_x.push_back(spring.x);
+  near.spring_y.push_back(spring.y);
+  near.spring_z.push_back(spring.z);
+  if (has_turn) {
+    near.turn_x.push_back(spring.turn_x);
+    near.turn_y.push_back(spring.turn_y);
+    near.turn_z.push_back(spring.turn_z);
   }
+  near.touching.push_back(touching);
+}
+
+PairSpring spring_at(NearPairs const& near, std::size_t n) {
+  PairSpring spring{near.spring_x[n], near.spring_y[n], near.spring_z[n], 0, 0, 0};
+  if (!near.turn_x.empty())
+    spring.turn_x = near.turn_x[n], spring.turn_y = near.turn_y[n], spring.turn_z = near.turn_z[n];
+  return spring;
+}
+
+/// Surfaces closer than `gap`, and not both asleep?
+bool is_near(Grains const& g, std::size_t i, std::size_t j, Period const& period, double gap) {
+  GrainState const &a = g[i], &b = g[j];
+  double const dx = wrapped(a.x - b.x, period.x), dy = wrapped(a.y - b.y, period.y), dz = a.z - b.z;
+  double const reach = a.radius + b.radius + gap;
+  return dx * dx + dy * dy + dz * dz < reach * reach && !(is_asleep(g.quiet[i]) && is_asleep(g.quiet[j]));
+}
+
+/// A block of pairs while it is worked on.
+struct PairBlock {
+  GrainLanes first, second;
+  ActionLanes on_first, on_second;
+  Lanes<std::int64_t> law, touching;  // as wide as the numbers: narrower ones make the vectors of the loop too long
 };
 
-Cells sort_into_cells(Grains const& g, double reach, double period) {
-  auto const [x_low, x_high] = std::ranges::minmax(g.x);
-  auto const [z_low, z_high] = std::ranges::minmax(g.z);
-  Cells cells{
-      .x0 = x_low, .z0 = z_low, .size = reach, .size_y = period, .nx = 0, .ny = 1, .nz = 0, .begin = {}, .rows = {}};
-  cells.nx = cells.column(x_high) + 1;
-  cells.nz = cells.layer(z_high) + 1;
-  if (period >= 3 * reach) {  // fewer than three strips would meet themselves around the period
-    cells.ny = static_cast<std::int32_t>(std::min(period / reach, 1e3));
-    cells.size_y = period / cells.ny;
+struct Springs {
+  double *x, *y, *z, *turn_x, *turn_y, *turn_z;
+};
+
+std::int64_t whole(double value, double per_unit) { return static_cast<std::int64_t>(value * per_unit); }
+
+/// Lanes [0, count) of a block: what every pair does to its grains.
+/// \return largest overlap over the smaller grain's diameter
+template <bool is_jkr, RollingModel rolling, bool many_laws>
+double act_on(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, Period const& period,
+              double dt, ActionUnit const& unit) {
+  GrainLanes const &a = pairs.first, &b = pairs.second;
+  ActionLanes &p = pairs.on_first, &q = pairs.on_second;
+  ContactLaw const only = laws[0];
+  double const half_x = 0.5 * period.x, half_y = 0.5 * period.y, period_x = period.x, period_y = period.y;
+  double const per_force = unit.per_force, per_torque = unit.per_torque;
+  double* __restrict ux = s.x, * __restrict uy = s.y, * __restrict uz = s.z;
+  double* __restrict ox = s.turn_x, * __restrict oy = s.turn_y, * __restrict oz = s.turn_z;
+  std::int64_t* __restrict touching = pairs.touching.values;
+  constexpr bool has_turn = rolling == RollingModel::epsd2;
+  double worst = 0;
+#pragma omp simd simdlen(8) reduction(max : worst)
+  for (std::size_t l = 0; l < count; ++l) {
+    double dx = a.x[l] - b.x[l], dy = a.y[l] - b.y[l];
+    double const dz = a.z[l] - b.z[l];
+    dx = dx > half_x ? dx - period_x : (dx < -half_x ? dx + period_x : dx);
+    dy = dy > half_y ? dy - period_y : (dy < -half_y ? dy + period_y : dy);
+    double const distance = std::sqrt(dx * dx + dy * dy + dz * dz), inverse = 1 / distance;
+    double const ra = a.radius[l], rb = b.radius[l], sum = ra + rb;
+    double const overlap = sum - distance, felt = overlap > 0.0 ? overlap : 0.0;
+    double const arm_a = ra - 0.5 * felt, arm_b = rb - 0.5 * felt;
+    ContactLaw const law = many_laws ? laws[pairs.law[l]] : only;
+    ContactState const state{overlap,
+                             ra * rb / sum,
+                             a.inverse_mass[l] + b.inverse_mass[l],
+                             dx * inverse,
+                             dy * inverse,
+                             dz * inverse,
+                             a.vx[l] - b.vx[l],
+                             a.vy[l] - b.vy[l],
+                             a.vz[l] - b.vz[l],
+                             arm_a * a.wx[l] + arm_b * b.wx[l],
+                             arm_a * a.wy[l] + arm_b * b.wy[l],
+                             arm_a * a.wz[l] + arm_b * b.wz[l],
+                             a.wx[l] - b.wx[l],
+                             a.wy[l] - b.wy[l],
+                             a.wz[l] - b.wz[l],
+                             ux[l],
+                             uy[l],
+                             uz[l],
+                             has_turn ? ox[l] : 0.0,
+                             has_turn ? oy[l] : 0.0,
+                             has_turn ? oz[l] : 0.0,
+                             is_jkr && touching[l] != 0};
+    ContactAction const c = act<is_jkr, rolling>(law, state, dt);
+    ux[l] = c.spring_x;
+    uy[l] = c.spring_y;
+    uz[l] = c.spring_z;
+    if constexpr (has_turn) ox[l] = c.turn_x, oy[l] = c.turn_y, oz[l] = c.turn_z;
+    touching[l] = c.touches ? 1 : 0;
+    p.fx[l] = whole(c.fx, per_force);
+    p.fy[l] = whole(c.fy, per_force);
+    p.fz[l] = whole(c.fz, per_force);
+    q.fx[l] = -p.fx[l];
+    q.fy[l] = -p.fy[l];
+    q.fz[l] = -p.fz[l];
+    p.tx[l] = whole(-arm_a * c.qx - c.rx, per_torque);
+    p.ty[l] = whole(-arm_a * c.qy - c.ry, per_torque);
+    p.tz[l] = whole(-arm_a * c.qz - c.rz, per_torque);
+    q.tx[l] = whole(c.rx - arm_b * c.qx, per_torque);
+    q.ty[l] = whole(c.ry - arm_b * c.qy, per_torque);
+    q.tz[l] = whole(c.rz - arm_b * c.qz, per_torque);
+    double const relative = felt / (ra < rb ? ra : rb);
+    worst = relative > worst ? relative : worst;
   }
-  std::vector<std::size_t> cell(g.size());
-  cells.begin.assign(static_cast<std::size_t>(cells.nx) * static_cast<std::size_t>(cells.ny * cells.nz) + 1, 0);
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    cell[i] = cells.index(cells.column(g.x[i]), cells.strip(g.y[i]), cells.layer(g.z[i]));
-    ++cells.begin[cell[i] + 1];
-  }
-  for (std::size_t c = 1; c < cells.begin.size(); ++c) cells.begin[c] += cells.begin[c - 1];
-  std::vector<std::int32_t> next(cells.begin.begin(), cells.begin.end() - 1);
-  cells.rows.resize(g.size());
-  for (std::size_t i = 0; i < g.size(); ++i)
-    cells.rows[static_cast<std::size_t>(next[cell[i]]++)] = static_cast<std::int32_t>(i);
-  return cells;
+  return 0.5 * worst;
 }
 
-double wrapped(double dy, double period) {
-  double const half = 0.5 * period;
-  return dy > half ? dy - period : (dy < -half ? dy + period : dy);
-}
+using ActOn = double (*)(PairBlock&, std::size_t, Springs const&, ContactLaw const*, Period const&, double,
+                         ActionUnit const&);
 
-/// Adds the pairs of owned grain `a` with later owned grains and with ghosts.
-void add_pairs_of(PairContacts& pairs, Grains const& g, Cells const& cells, std::size_t a, double skin, double period) {
-  std::int32_t const i = cells.column(g.x[a]), j = cells.strip(g.y[a]), k = cells.layer(g.z[a]);
-  std::int32_t const dj = cells.ny > 1 ? 1 : 0;
-  for (std::int32_t ci = std::max(i - 1, 0); ci <= std::min(i + 1, cells.nx - 1); ++ci)
-    for (std::int32_t ck = std::max(k - 1, 0); ck <= std::min(k + 1, cells.nz - 1); ++ck)
-      for (std::int32_t cj = j - dj; cj <= j + dj; ++cj) {
-        std::size_t const c = cells.index(ci, (cj + cells.ny) % cells.ny, ck);
-        for (std::int32_t at = cells.begin[c]; at < cells.begin[c + 1]; ++at) {
-          auto const b = static_cast<std::size_t>(cells.rows[static_cast<std::size_t>(at)]);
-          if (b <= a) continue;
-          double const dx = g.x[a] - g.x[b], dy = wrapped(g.y[a] - g.y[b], period), dz = g.z[a] - g.z[b];
-          double const reach = g.radius[a] + g.radius[b] + skin;
-          if (dx * dx + dy * dy + dz * dz >= reach * reach) continue;
-          bool const ascending = g.id[a] < g.id[b];
-          pairs.first.push_back(static_cast<std::int32_t>(ascending ? a : b));
-          pairs.second.push_back(static_cast<std::int32_t>(ascending ? b : a));
-        }
-      }
+template <bool many_laws>
+ActOn kernel(LawForm const& form) {
+  constexpr auto cdt = RollingModel::cdt, epsd2 = RollingModel::epsd2;
+  if (form.jkr) return form.rolling == cdt ? act_on<true, cdt, many_laws> : act_on<true, epsd2, many_laws>;
+  return form.rolling == cdt ? act_on<false, cdt, many_laws> : act_on<false, epsd2, many_laws>;
 }
-
-void fill_pair_constants(PairContacts& pairs, Grains const& g, std::vector<ContactSpring> const& springs) {
-  std::size_t const n = pairs.size();
-  for (auto* values : {&pairs.radius_sum, &pairs.reduced_radius, &pairs.reduced_mass, &pairs.inverse_diameter,
-                       &pairs.spring_x, &pairs.spring_y, &pairs.spring_z})
-    values->assign(n, 0.0);
-  pairs.touching.assign(n, 0);
-  pairs.action.assign(n, 0);
-  pairs.actions.assign(n + 1, PairAction{});
-  for (std::size_t k = 0; k < n; ++k) {
-    auto const i = static_cast<std::size_t>(pairs.first[k]), j = static_cast<std::size_t>(pairs.second[k]);
-    pairs.radius_sum[k] = g.radius[i] + g.radius[j];
-    pairs.reduced_radius[k] = g.radius[i] * g.radius[j] / pairs.radius_sum[k];
-    pairs.reduced_mass[k] = g.mass[i] * g.mass[j] / (g.mass[i] + g.mass[j]);
-    pairs.inverse_diameter[k] = 0.5 / std::min(g.radius[i], g.radius[j]);
-    if (ContactSpring const* old = find_spring(springs, g.id[i], g.id[j])) {
-      pairs.touching[k] = -1;
-      pairs.spring_x[k] = old->spring[0];
-      pairs.spring_y[k] = old->spring[1];
-      pairs.spring_z[k] = old->spring[2];
-    }
-  }
-}
-
-void list_pairs_by_grain(PairContacts& pairs, Grains const& g) {
-  pairs.begin.assign(g.owned + 1, 0);
-  auto const for_each_side = [&](auto&& visit) {
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      if (static_cast<std::size_t>(pairs.first[k]) < g.owned) visit(static_cast<std::size_t>(pairs.first[k]), 2 * k);
-      if (static_cast<std::size_t>(pairs.second[k]) < g.owned)
-        visit(static_cast<std::size_t>(pairs.second[k]), 2 * k + 1);
-    }
-  };
-  for_each_side([&](std::size_t row, std::size_t) { ++pairs.begin[row + 1]; });
-  for (std::size_t i = 0; i < g.owned; ++i) pairs.begin[i + 1] += pairs.begin[i];
-  pairs.entries.resize(static_cast<std::size_t>(pairs.begin[g.owned]));
-  std::vector<std::int32_t> next(pairs.begin.begin(), pairs.begin.end() - 1);
-  for_each_side([&](std::size_t row, std::size_t entry) {
-    pairs.entries[static_cast<std::size_t>(next[row]++)] = static_cast<std::int32_t>(entry);
-  });
-  auto const partner_id = [&](std::int32_t entry) {
-    auto const& partner = entry & 1 ? pairs.first : pairs.second;
-    return g.id[static_cast<std::size_t>(partner[static_cast<std::size_t>(entry >> 1)])];
-  };
-  for (std::size_t i = 0; i < g.owned; ++i) {
-    std::sort(pairs.entries.begin() + pairs.begin[i], pairs.entries.begin() + pairs.begin[i + 1],
-              [&](std::int32_t a, std::int32_t b) { return partner_id(a) < partner_id(b); });
-  }
-}
-
-constexpr std::size_t block = 512;  // pairs at a time: what the two passes share stays in the first-level cache
 
 }  // namespace
 
-void build_pairs(PairContacts& pairs, Grains const& grains, double skin, double period,
-                 std::vector<ContactSpring> const& springs) {
-  pairs.first.clear();
-  pairs.second.clear();
-  if (grains.size() > 0) {
-    double const largest = *std::ranges::max_element(grains.radius);
-    Cells const cells = sort_into_cells(grains, 2 * largest + skin, period);
-    for (std::size_t a = 0; a < grains.owned; ++a) add_pairs_of(pairs, grains, cells, a, skin, period);
-  }
-  fill_pair_constants(pairs, grains, springs);
-  list_pairs_by_grain(pairs, grains);
+namespace {
+
+/// A pair on its way into the second part of a chunk.
+struct FarPair {
+  std::size_t pair;
+  std::int32_t first, second;
+  PairSpring spring;
+  bool touching;
+};
+
+void fill_up(NearPairs& near, std::int32_t far_away, bool has_turn) {
+  while (near.first.size() % lanes_at_once != 0)
+    append(near, far_away, static_cast<std::int32_t>(near.from), {}, false, has_turn);
 }
 
-void append_springs(PairContacts const& pairs, Grains const& grains, std::vector<LocalSpring>& springs) {
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (!pairs.touching[k]) continue;
-    std::int32_t const i = pairs.first[k], j = pairs.second[k];
-    springs.push_back({{grains.id[static_cast<std::size_t>(i)],
-                        grains.id[static_cast<std::size_t>(j)],
-                        {pairs.spring_x[k], pairs.spring_y[k], pairs.spring_z[k]}},
+/// Ends a chunk with its far pairs; their slots hold rows until all are known.
+void end_chunk(NearPairs& near, Neighbours& neighbours, std::vector<FarPair>& far, std::int32_t far_away,
+               bool has_turn) {
+  fill_up(near, far_away, has_turn);
+  near.far_part.push_back(near.first.size());
+  near.far_slots.push_back(near.slot_first.size());
+  for (FarPair const& pair : far) {
+    neighbours.spring[pair.pair] = static_cast<std::int32_t>(near.first.size());
+    append(near, pair.first, pair.second, pair.spring, pair.touching, has_turn);
+  }
+  fill_up(near, far_away, has_turn);
+  near.slot_first.insert(near.slot_first.end(), near.first.begin() + static_cast<std::ptrdiff_t>(near.far_part.back()),
+                         near.first.end());
+  near.slot_second.insert(near.slot_second.end(),
+                          near.second.begin() + static_cast<std::ptrdiff_t>(near.far_part.back()), near.second.end());
+  near.chunk.push_back(near.first.size());
+  far.clear();
+}
+
+/// Turns the rows of far pairs into slots.
+void give_slots(NearPairs& near, std::size_t owned) {
+  auto const last = static_cast<std::int32_t>(owned);
+  for (std::size_t k = 0; k < near.slot_first.size(); ++k) {
+    std::int32_t const higher = std::max(near.slot_first[k], near.slot_second[k]);
+    if (higher < last) near.far_rows.push_back(higher);
+  }
+  std::ranges::sort(near.far_rows);
+  auto const doubles = std::ranges::unique(near.far_rows);
+  near.far_rows.erase(doubles.begin(), doubles.end());
+  auto const in_ring = [](std::int32_t row) { return row % static_cast<std::int32_t>(NearPairs::ring); };
+  for (std::size_t k = 0; k < near.slot_first.size(); ++k) {
+    std::int32_t &first = near.slot_first[k], &second = near.slot_second[k];
+    std::int32_t &higher = first > second ? first : second, &lower = first > second ? second : first;
+    lower = in_ring(lower);
+    auto const place = std::ranges::lower_bound(near.far_rows, higher) - near.far_rows.begin();
+    higher = higher < last ? NearPairs::far_slot + static_cast<std::int32_t>(place) : NearPairs::nowhere;
+  }
+}
+
+}  // namespace
+
+void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& g, Period const& period, double gap,
+                 bool has_turn, NearPairs& old, std::vector<PairSpring> const& dormant) {
+  clear(near);
+  auto const far_away = static_cast<std::int32_t>(g.size());
+  std::vector<FarPair> far;
+  std::size_t chunk_begin = near.from;
+  for (std::size_t row = near.from; row < near.to; ++row) {
+    for (std::int32_t at = neighbours.begin[row]; at < neighbours.begin[row + 1]; ++at) {
+      auto const k = static_cast<std::size_t>(at);
+      std::int32_t const first = neighbours.first[k], second = neighbours.second[k], place = neighbours.spring[k];
+      PairSpring spring{};
+      bool touching = false;
+      if (place >= 0 && old.touching[static_cast<std::size_t>(place)]) {
+        spring = spring_at(old, static_cast<std::size_t>(place));
+        touching = true;
+      } else if (place <= -2) {
+        spring = dormant[static_cast<std::size_t>(-2 - place)];
+        touching = true;
+      }
+      if (is_near(g, static_cast<std::size_t>(first), static_cast<std::size_t>(second), period, gap)) {
+        auto const higher = static_cast<std::size_t>(std::max(first, second));
+        if (higher < std::min(near.to, chunk_begin + NearPairs::ring)) {
+          neighbours.spring[k] = static_cast<std::int32_t>(near.first.size());
+          append(near, first, second, spring, touching, has_turn);
+        } else {
+          far.push_back({k, first, second, spring, touching});
+        }
+      } else if (touching) {
+        neighbours.spring[k] = dormant_spring(near.dormant.size());
+        near.dormant.push_back(spring);
+      } else {
+        neighbours.spring[k] = no_spring;
+      }
+    }
+    if ((row + 1 - near.from) % NearPairs::rows_a_chunk == 0 || row + 1 == near.to) {
+      end_chunk(near, neighbours, far, far_away, has_turn);
+      chunk_begin = row + 1;
+    }
+  }
+  give_slots(near, g.owned);
+}
+
+namespace {
+/// Calls visit(pair, spring) for every touching pair of the rows of `near`.
+template <class Visit>
+void for_each_spring(NearPairs const& near, Neighbours const& neighbours, Visit const& visit) {
+  auto const begin = static_cast<std::size_t>(neighbours.begin[near.from]),
+             end = static_cast<std::size_t>(neighbours.begin[near.to]);
+  for (std::size_t k = begin; k < end; ++k) {
+    std::int32_t const place = neighbours.spring[k];
+    if (place >= 0 && near.touching[static_cast<std::size_t>(place)])
+      visit(k, spring_at(near, static_cast<std::size_t>(place)));
+    else if (place <= -2)
+      visit(k, near.dormant[static_cast<std::size_t>(-2 - place)]);
+  }
+}
+}  // namespace
+
+void make_dormant(Neighbours& neighbours, std::vector<NearPairs const*> const& shares) {
+  std::vector<PairSpring> dormant;
+  std::vector<std::int32_t> place(neighbours.size(), no_spring);
+  for (NearPairs const* near : shares) {
+    for_each_spring(*near, neighbours, [&](std::size_t k, PairSpring const& spring) {
+      place[k] = dormant_spring(dormant.size());
+      dormant.push_back(spring);
+    });
+  }
+  neighbours.dormant = std::move(dormant);
+  neighbours.spring = std::move(place);
+}
+
+void append_springs(NearPairs const& near, Neighbours const& neighbours, Grains const& g,
+                    std::vector<LocalSpring>& springs) {
+  for_each_spring(near, neighbours, [&](std::size_t k, PairSpring const& s) {
+    std::int32_t const i = neighbours.first[k], j = neighbours.second[k];
+    springs.push_back({{g.id[static_cast<std::size_t>(i)],
+                        g.id[static_cast<std::size_t>(j)],
+                        {s.x, s.y, s.z},
+                        {s.turn_x, s.turn_y, s.turn_z}},
                        i,
                        j});
-  }
+  });
 }
 
 namespace {
 
-/// Pairs [start, start + count) that touch, in order; gives each its row of actions.
-/// \param contact  room for `count` pairs
-/// \return number of touching pairs
-std::int32_t find_touching(PairContacts& pairs, Grains const& grains, double period, std::int32_t start,
-                           std::int32_t count, std::int32_t* __restrict touches, std::int32_t* __restrict contact) {
-  double const* __restrict x = grains.x.data(), * __restrict y = grains.y.data(), * __restrict z = grains.z.data();
-  std::int32_t const* __restrict first = pairs.first.data(), * __restrict second = pairs.second.data();
-  double const* __restrict radius_sum = pairs.radius_sum.data();
-  std::int32_t* __restrict action = pairs.action.data();
-  double const half = 0.5 * period;
-#pragma omp simd
-  for (std::int32_t l = 0; l < count; ++l) {
-    std::int32_t const k = start + l, i = first[k], j = second[k];
-    double const dx = x[i] - x[j], dz = z[i] - z[j];
-    double dy = y[i] - y[j];
-    dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
-    touches[l] = dx * dx + dy * dy + dz * dz < radius_sum[k] * radius_sum[k] ? -1 : 0;
-  }
-  std::int32_t contacts = 0;
-  for (std::int32_t l = 0; l < count; ++l) {  // no branch: which pairs touch cannot be predicted
-    contact[contacts] = start + l;
-    action[start + l] = touches[l] & (start + 1 + contacts);
-    contacts -= touches[l];
-  }
-  return contacts;
-}
-
-/// Forces of the listed pairs, all at once.
-/// \return largest overlap over the smaller grain's diameter
-double act_on(PairContacts& pairs, Grains const& g, ContactLaw const law, double period, double dt,
-              std::int32_t const* __restrict contact, std::int32_t contacts, PairAction* __restrict action) {
-  double const* __restrict x = g.x.data(), * __restrict y = g.y.data(), * __restrict z = g.z.data();
-  double const* __restrict vx = g.vx.data(), * __restrict vy = g.vy.data(), * __restrict vz = g.vz.data();
-  double const* __restrict wx = g.wx.data(), * __restrict wy = g.wy.data(), * __restrict wz = g.wz.data();
-  double const* __restrict radius = g.radius.data();
-  std::int32_t const* __restrict first = pairs.first.data(), * __restrict second = pairs.second.data();
-  double const* __restrict radius_sum = pairs.radius_sum.data(), * __restrict reduced_radius =
-                                                                     pairs.reduced_radius.data();
-  double const* __restrict reduced_mass = pairs.reduced_mass.data(), * __restrict inverse_diameter =
-                                                                         pairs.inverse_diameter.data();
-  double *__restrict spring_x = pairs.spring_x.data(), *__restrict spring_y = pairs.spring_y.data(),
-         *__restrict spring_z = pairs.spring_z.data();
-  std::int32_t const* __restrict touching = pairs.touching.data();
-  double const half = 0.5 * period;
+/// The pairs [begin, end), whose slots are given or else the rows modulo the ring.
+double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::int32_t const* slot_first,
+                     std::int32_t const* slot_second, Grains const& g, LawTable const& laws, Period const& period,
+                     double dt, ActionUnit const& unit, GrainAction* actions) {
+  bool const many = laws.materials > 1, has_turn = laws.form.rolling == RollingModel::epsd2;
+  ActOn const act_on_block = many ? kernel<true>(laws.form) : kernel<false>(laws.form);
+  PairBlock pairs;
+  std::int32_t in_ring_first[block], in_ring_second[block];
   double worst = 0;
-#pragma omp simd reduction(max : worst)
-  for (std::int32_t l = 0; l < contacts; ++l) {
-    std::int32_t const k = contact[l], i = first[k], j = second[k];
-    double const dx = x[i] - x[j], dz = z[i] - z[j];
-    double dy = y[i] - y[j];
-    dy = dy > half ? dy - period : (dy < -half ? dy + period : dy);
-    double const distance = std::sqrt(dx * dx + dy * dy + dz * dz), inverse = 1 / distance;
-    double const overlap = radius_sum[k] - distance;
-    double const arm_i = radius[i] - 0.5 * overlap, arm_j = radius[j] - 0.5 * overlap;
-    bool const had = touching[k] != 0;
-    ContactAction const a =
-        act(law,
-            {overlap, reduced_radius[k], reduced_mass[k], dx * inverse, dy * inverse, dz * inverse, vx[i] - vx[j],
-             vy[i] - vy[j], vz[i] - vz[j], arm_i * wx[i] + arm_j * wx[j], arm_i * wy[i] + arm_j * wy[j],
-             arm_i * wz[i] + arm_j * wz[j], wx[i] - wx[j], wy[i] - wy[j], wz[i] - wz[j], had ? spring_x[k] : 0.0,
-             had ? spring_y[k] : 0.0, had ? spring_z[k] : 0.0},
-            dt);
-    spring_x[k] = a.spring_x;
-    spring_y[k] = a.spring_y;
-    spring_z[k] = a.spring_z;
-    action[l].force = {a.fx, a.fy, a.fz, 0.0};
-    action[l].torque_first = {-arm_i * a.qx - a.rx, -arm_i * a.qy - a.ry, -arm_i * a.qz - a.rz, 0.0};
-    action[l].torque_second = {a.rx - arm_j * a.qx, a.ry - arm_j * a.qy, a.rz - arm_j * a.qz, 0.0};
-    double const relative = overlap * inverse_diameter[k];
-    worst = relative > worst ? relative : worst;
+  for (std::size_t at = begin; at < end; at += block) {
+    std::size_t const count = std::min(block, end - at);
+    std::int32_t const *first = near.first.data() + at, *second = near.second.data() + at;
+    for (std::size_t l = 0; l < count; l += lanes_at_once) {
+      load_lanes(g.state.data(), first + l, pairs.first, l);
+      load_lanes(g.state.data(), second + l, pairs.second, l);
+    }
+    for (std::size_t l = 0; many && l < count; ++l)
+      pairs.law[l] = g.material[static_cast<std::size_t>(first[l])] * laws.materials +
+                     g.material[static_cast<std::size_t>(second[l])];
+    Springs const springs{&near.spring_x[at],
+                          &near.spring_y[at],
+                          &near.spring_z[at],
+                          has_turn ? &near.turn_x[at] : nullptr,
+                          has_turn ? &near.turn_y[at] : nullptr,
+                          has_turn ? &near.turn_z[at] : nullptr};
+    std::copy_n(&near.touching[at], count, pairs.touching.values);
+    worst = std::max(worst, act_on_block(pairs, count, springs, laws.laws.data(), period, dt, unit));
+    std::copy_n(pairs.touching.values, count, &near.touching[at]);
+    constexpr auto mask = static_cast<std::int32_t>(NearPairs::ring) - 1;
+    for (std::size_t l = 0; l < count; ++l) in_ring_first[l] = first[l] & mask, in_ring_second[l] = second[l] & mask;
+    for (std::size_t l = 0; l < count; l += lanes_at_once) {
+      add_lanes(pairs.on_first, l, slot_first ? slot_first + (at - begin) + l : in_ring_first + l, actions);
+      add_lanes(pairs.on_second, l, slot_second ? slot_second + (at - begin) + l : in_ring_second + l, actions);
+    }
   }
   return worst;
 }
 
 }  // namespace
 
-double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw const& law, double period, double dt,
-                      std::size_t from, std::size_t to) {
-  alignas(64) std::int32_t touches[block];  // -1: yes, 0: no
-  alignas(64) std::int32_t contact[block];
-  double worst = 0;
-  for (std::size_t at = from; at < to; at += block) {
-    auto const start = static_cast<std::int32_t>(at), count = static_cast<std::int32_t>(std::min(block, to - at));
-    std::int32_t const contacts = find_touching(pairs, grains, period, start, count, touches, contact);
-    worst =
-        std::max(worst, act_on(pairs, grains, law, period, dt, contact, contacts, pairs.actions.data() + start + 1));
-    std::copy_n(touches, count, pairs.touching.begin() + start);
-  }
-  return worst;
+double evaluate_pairs(NearPairs& near, std::size_t chunk, Grains const& g, LawTable const& laws, Period const& period,
+                      double dt, ActionUnit const& unit, GrainAction* actions) {
+  std::size_t const begin = near.chunk[chunk], far = near.far_part[chunk], end = near.chunk[chunk + 1];
+  std::size_t const slots = near.far_slots[chunk];
+  double const soon = evaluate_part(near, begin, far, nullptr, nullptr, g, laws, period, dt, unit, actions);
+  return std::max(soon, evaluate_part(near, far, end, near.slot_first.data() + slots, near.slot_second.data() + slots,
+                                      g, laws, period, dt, unit, actions));
 }
 
 }  // namespace layerloop::dem

@@ -1,59 +1,66 @@
 #pragma once
-#include <array>
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "dem/action_unit.hpp"
 #include "dem/contact_law.hpp"
-#include "dem/grains.hpp"
+#include "dem/neighbours.hpp"
 
 namespace layerloop::dem {
 
-/// What one contact does to its two grains: force on the first, torque on either.
-struct alignas(32) PairAction {
-  std::array<double, 4> force, torque_first, torque_second;
+/// Laws for each pair of materials: law(a, b) is at [a * materials + b].
+struct LawTable {
+  LawForm form;
+  std::int32_t materials = 1;
+  std::vector<ContactLaw> laws;
 };
 
-/// Pairs of grains closer than the skin, with their springs. The first grain of a pair has the lower id, so that a pair
-/// is computed the same way on every rank that holds it.
-struct PairContacts {
-  std::vector<std::int32_t> first, second;  ///< rows
-  std::vector<double> radius_sum, reduced_radius, reduced_mass;
-  std::vector<double> inverse_diameter;              ///< of the smaller grain
-  std::vector<double> spring_x, spring_y, spring_z;  ///< valid while `touching`
-  std::vector<std::int32_t> touching;                ///< at the last evaluation: -1 yes, 0 no
-  std::vector<std::int32_t> action;                  ///< row in `actions`; 0 (nothing) when not touching
-  std::vector<PairAction> actions;
+/// The pairs of some rows that may touch before the grains have moved on by `half_gap` each, with their springs: only
+/// these are computed. Pairs of sleeping grains are left out too.
+///
+/// In chunks of rows, each in two parts that are filled up to whole vectors by pairs with the row behind the last
+/// grain, which is far away: pairs whose higher row moves soon, and the others (across a seam of the order, a period,
+/// or into another share). What a pair does is added up in a ring of slots, row modulo `ring`, small enough for the
+/// cache; what the others do to their higher row waits in a slot of its own behind the ring.
+struct NearPairs {
+  using Numbers = std::vector<double, Eigen::aligned_allocator<double>>;
+  std::size_t from = 0, to = 0;  ///< rows: pairs whose lower row is one of these
+  std::vector<std::int32_t> first, second;
+  Numbers spring_x, spring_y, spring_z;
+  Numbers turn_x, turn_y, turn_z;      ///< only with a rolling spring
+  std::vector<std::uint8_t> touching;  ///< at the last evaluation
+  std::vector<PairSpring> dormant;     ///< springs of pairs that are left out
+  std::vector<std::size_t> chunk;      ///< begin of each chunk's pairs; chunks + 1 values
+  std::vector<std::size_t> far_part;   ///< of each chunk: begin of its second part
+  std::vector<std::size_t> far_slots;  ///< of each chunk: begin of its second part in `slot_first`, `slot_second`
+  std::vector<std::int32_t> slot_first, slot_second;
+  std::vector<std::int32_t> far_rows;  ///< owned rows with a slot behind the ring, ascending: far_slot + place
 
-  /// Pairs of every owned grain in order of the partner's id: 2 * pair + (1 when the grain is the second).
-  std::vector<std::int32_t> begin, entries;
-
-  std::size_t size() const { return first.size(); }
+  static constexpr std::size_t rows_a_chunk = 256, ring = 2048;
+  static constexpr std::int32_t nowhere = ring, far_slot = ring + 1;  ///< `nowhere`: what is done to ghosts
+  std::size_t chunks() const { return far_part.size(); }
+  std::size_t slots() const { return ring + 1 + far_rows.size(); }
+  /// One more than the highest owned row in a pair.
+  std::size_t reach() const { return far_rows.empty() ? 0 : static_cast<std::size_t>(far_rows.back()) + 1; }
 };
 
-/// Lists all pairs with an owned grain whose surfaces are closer than `skin`; y wraps with `period`. Springs are taken
-/// over.
-void build_pairs(PairContacts& pairs, Grains const& grains, double skin, double period,
-                 std::vector<ContactSpring> const& springs);
+/// Chooses the near pairs of rows [from, to) anew. `old` holds the springs of those that were near, `dormant` those of
+/// the others. \param gap  surfaces closer than this are near [m]
+void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& grains, Period const& period, double gap,
+                 bool has_turn, NearPairs& old, std::vector<PairSpring> const& dormant);
 
-void append_springs(PairContacts const& pairs, Grains const& grains, std::vector<LocalSpring>& springs);
+/// Puts the springs of all shares' pairs back among the dormant ones of the list.
+void make_dormant(Neighbours& neighbours, std::vector<NearPairs const*> const& shares);
 
-/// Forces of the pairs [from, to). No allocation.
+/// Springs of all touching pairs of the rows of `near`.
+void append_springs(NearPairs const& near, Neighbours const& neighbours, Grains const& grains,
+                    std::vector<LocalSpring>& springs);
+
+/// Adds what the pairs of one chunk do to their grains. No allocation.
+/// \param actions  slots() of them, of this thread
 /// \return largest overlap over the smaller grain's diameter
-double evaluate_pairs(PairContacts& pairs, Grains const& grains, ContactLaw const& law, double period, double dt,
-                      std::size_t from, std::size_t to);
-
-/// Adds what all contacts do to one owned grain: the same order on any number of ranks.
-inline void add_pair_actions(PairContacts const& pairs, std::size_t row, double* force, double* torque) {
-  for (std::int32_t e = pairs.begin[row]; e < pairs.begin[row + 1]; ++e) {
-    std::int32_t const entry = pairs.entries[static_cast<std::size_t>(e)];
-    PairAction const& action =
-        pairs.actions[static_cast<std::size_t>(pairs.action[static_cast<std::size_t>(entry >> 1)])];
-    bool const second = entry & 1;
-    double const sign = second ? -1.0 : 1.0;
-    double const* turn = second ? action.torque_second.data() : action.torque_first.data();
-    for (std::size_t c = 0; c < 4; ++c) force[c] += sign * action.force[c];
-    for (std::size_t c = 0; c < 4; ++c) torque[c] += turn[c];
-  }
-}
+double evaluate_pairs(NearPairs& near, std::size_t chunk, Grains const& grains, LawTable const& laws,
+                      Period const& period, double dt, ActionUnit const& unit, GrainAction* actions);
 
 }  // namespace layerloop::dem

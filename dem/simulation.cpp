@@ -8,12 +8,15 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "core/rayleigh_time.hpp"
 #include "dem/step_barrier.hpp"
 
 namespace layerloop::dem {
 namespace {
 constexpr double skin_over_smallest_radius = 0.35;
 constexpr std::size_t grains_a_thread = 400;  // fewer are not worth a barrier
+constexpr double steps_a_choice = 30;         // aimed at, between choices of near pairs
+constexpr double least_half_gap = 5e-5;       // of the smallest radius
 
 struct Range {
   std::size_t from, to;
@@ -22,6 +25,16 @@ struct Range {
 Range share(std::size_t n, int part, int parts) {
   auto const p = static_cast<std::size_t>(part), all = static_cast<std::size_t>(parts);
   return {n * p / all, n * (p + 1) / all};
+}
+
+double squared(double x, double y, double z) { return x * x + y * y + z * z; }
+
+void take_from_ring(GrainAction* ring, std::size_t from, std::size_t to, GrainAction* actions) {
+  for (std::size_t row = from; row < to; ++row) {
+    GrainAction& slot = ring[row % NearPairs::ring];
+    actions[row - from] = slot;
+    slot = {};
+  }
 }
 }  // namespace
 
@@ -36,7 +49,12 @@ Motion motion_of(Case const& checked) {
 }
 
 Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
-    : motion_(motion), rig_(std::move(rig)), communicator_(communicator), decomposition_(communicator) {
+    : motion_(motion),
+      rig_(std::move(rig)),
+      communicator_(communicator),
+      decomposition_(communicator, rig_.length),
+      period_{rig_.length, rig_.width},
+      laws_{law_form(motion_.contact), 1, {motion_.between_grains}} {
   for (RoundedBlock const& block : rig_.walls.blocks) fastest_wall_ = std::max(fastest_wall_, std::abs(block.velocity));
 }
 
@@ -57,26 +75,33 @@ void Simulation::scatter(PowderBed const& bed) {
                     "make machine.width at least {:.3g} um",
                     rig_.width * 1e6, 2e6 * largest, 4.2e6 * largest + 2e6 * skin_));
   }
+  if (rig_.length < 4 * largest + 2 * skin_)
+    throw InputError("the period along x is shorter than two grains (a grain would meet itself) use a longer one");
+  tear_off_ = tear_off_gap(motion_.between_grains, largest);
+  unit_ = ActionUnit(motion_.between_grains.normal_stiffness, largest);
   triangle_grid_ = TriangleGrid(rig_.walls.substrate, 2 * largest);
   Range const own = share(bed.size(), communicator_.rank(), communicator_.size());
   for (std::size_t i = own.from; i < own.to; ++i) {
-    grains_.push_back({bed.id[i], bed.x[i], bed.y[i], bed.z[i], bed.vx[i], bed.vy[i], bed.vz[i], bed.wx[i], bed.wy[i],
-                       bed.wz[i], bed.radius[i], bed.material[i], 0},
-                      motion_.density);
+    grains_.push_back(record_of(bed, i, motion_.density));
   }
   grains_.owned = grains_.size();
   grain_count_ = static_cast<std::int64_t>(bed.size());
-  pairs_ = {};
+  neighbours_ = {};
+  shares_.clear();
   wall_contacts_ = {};
   if (Fault const lost = find_lost_grain(); communicator_.any(!lost.text.empty())) fail(lost);
   rebuild();
   check_first_overlaps();
 }
 
+void Simulation::append_all_springs(std::vector<LocalSpring>& springs) const {
+  for (Share const& share : shares_) append_springs(share.near, neighbours_, grains_, springs);
+  append_springs(wall_contacts_, grains_, springs);
+}
+
 void Simulation::rebuild() {
   std::vector<LocalSpring> local;
-  append_springs(pairs_, grains_, local);
-  append_springs(wall_contacts_, grains_, local);
+  append_all_springs(local);
   std::vector<GrainRecord> records(grains_.owned);
   for (std::size_t i = 0; i < records.size(); ++i) records[i] = grains_.record(i);
   bool const first = rebuilds_++ == 0;  // springs come from the bed then, and every rank has them all
@@ -87,30 +112,72 @@ void Simulation::rebuild() {
 
   double const cell = 2 * largest_radius_;  // neighbours in space are neighbours in memory
   auto const place = [&](GrainRecord const& r) {
-    return std::tuple(std::floor(r.x / cell), std::floor(r.z / cell), r.y, r.id);
+    return std::tuple(std::floor(r.state.y / (8 * cell)), std::floor(r.state.x / cell), std::floor(r.state.z / cell),
+                      r.state.y, r.id);
   };
   std::ranges::sort(records, {}, place);
   grains_.clear();
-  for (GrainRecord const& record : records) grains_.push_back(record, motion_.density);
+  for (GrainRecord const& record : records) grains_.push_back(record);
   grains_.owned = grains_.size();
-  decomposition_.add_ghosts(grains_, 2 * largest_radius_ + skin_, motion_.density);
+  decomposition_.add_ghosts(grains_, 2 * largest_radius_ + skin_);
+  grains_.close();
 
-  build_pairs(pairs_, grains_, skin_, rig_.width, springs);
+  build_neighbours(neighbours_, grains_, skin_, period_, springs);
   build_wall_contacts(wall_contacts_, grains_, rig_.walls, triangle_grid_, skin_, time(), springs);
   wall_entry_.assign(grains_.owned, -1);
   for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w)
     wall_entry_[static_cast<std::size_t>(wall_contacts_.grain[w])] = static_cast<std::int32_t>(w);
-  x_built_.assign(grains_.x.begin(), grains_.x.begin() + static_cast<std::ptrdiff_t>(grains_.owned));
-  y_built_.assign(grains_.y.begin(), grains_.y.begin() + static_cast<std::ptrdiff_t>(grains_.owned));
-  z_built_.assign(grains_.z.begin(), grains_.z.begin() + static_cast<std::ptrdiff_t>(grains_.owned));
+  x_built_.resize(grains_.owned);
+  y_built_.resize(grains_.owned);
+  z_built_.resize(grains_.owned);
+  for (std::size_t i = 0; i < grains_.owned; ++i) {
+    x_built_[i] = grains_[i].x;
+    y_built_[i] = grains_[i].y;
+    z_built_[i] = grains_[i].z;
+  }
   time_built_ = time();
 
   int const cores = std::max(1, omp_get_num_procs() / decomposition_.ranks_on_node());
   team_.allow(std::clamp(static_cast<int>(grains_.owned / grains_a_thread), 1, std::min(omp_get_max_threads(), cores)));
-  batches_.resize(static_cast<std::size_t>(team_.most()));
-  for (WallBatch& batch : batches_) batch.reserve(wall_contacts_.springs.size());
+  shares_.clear();
+  share_out(team_.threads());
 }
 
+void Simulation::share_out(int shares) {
+  if (!shares_.empty()) {
+    std::vector<NearPairs const*> near;
+    for (Share const& share : shares_) near.push_back(&share.near);
+    make_dormant(neighbours_, near);
+  }
+  double fastest = fastest_ghost_squared();
+  for (std::size_t i = 0; i < grains_.owned; ++i)
+    fastest = std::max(fastest, squared(grains_[i].vx, grains_[i].vy, grains_[i].vz));
+  shares_.resize(static_cast<std::size_t>(shares));
+  for (int part = 0; part < shares; ++part) {
+    Share& share = shares_[static_cast<std::size_t>(part)];
+    auto const [first, last] = dem::share(neighbours_.size() + grains_.owned, part, shares);
+    // a row costs about as much as a pair
+    auto const cut = [&](std::size_t load) {
+      std::size_t low = 0, high = grains_.owned;
+      while (low < high) {
+        std::size_t const middle = (low + high) / 2;
+        if (static_cast<std::size_t>(neighbours_.begin[middle]) + middle < load)
+          low = middle + 1;
+        else
+          high = middle;
+      }
+      return low;
+    };
+    share.near.from = part == 0 ? 0 : cut(first);
+    share.near.to = part + 1 == shares ? grains_.owned : cut(last);
+    share.actions.assign(NearPairs::ring, {});
+    share.batch.reserve(wall_contacts_.springs.size());
+    share.near.dormant = neighbours_.dormant;
+  }
+  way_since_choice_ = 0;
+  half_gap_ = suitable_half_gap(fastest);
+  for (Share& share : shares_) choose_near_pairs(share, half_gap_);
+}
 void Simulation::advance(std::int64_t steps) {
   std::int64_t const end = steps_ + steps;
   while (steps_ < end) {
@@ -120,101 +187,170 @@ void Simulation::advance(std::int64_t steps) {
   }
 }
 
+double Simulation::suitable_half_gap(double fastest_squared) const {
+  double const way = steps_a_choice * std::sqrt(fastest_squared) * motion_.time_step;
+  return std::clamp(way, least_half_gap * smallest_radius_, 0.5 * skin_);
+}
+
+void Simulation::choose_near_pairs(Share& share, double half_gap) {
+  std::swap(share.near, share.near_before);
+  share.near.from = share.near_before.from;
+  share.near.to = share.near_before.to;
+  choose_near(share.near, neighbours_, grains_, period_, 2 * half_gap + tear_off_,
+              laws_.form.rolling == RollingModel::epsd2, share.near_before, share.near_before.dormant);
+  share.actions.assign(share.near.slots(), {});
+}
+
+void Simulation::evaluate(Share& share, std::size_t chunk, double now) {
+  std::size_t const from = share.near.from + chunk * NearPairs::rows_a_chunk,
+                    to = std::min(from + NearPairs::rows_a_chunk, share.near.to);
+  double const dt = motion_.time_step;
+  double const overlap = evaluate_pairs(share.near, chunk, grains_, laws_, period_, dt, unit_, share.actions.data());
+  auto const& near_walls = wall_contacts_.grain;
+  auto const entry = [&](std::size_t row) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
+                                    near_walls.begin());
+  };
+  WallReport const report = evaluate_walls(wall_contacts_, share.batch, grains_, rig_.walls, motion_.at_walls, now, dt,
+                                           entry(from), entry(to));
+  share.watch.overlap = std::max({share.watch.overlap, overlap, report.worst_overlap});
+  share.pushed_back += report.pushed_back;
+}
+
 void Simulation::run_steps(std::int64_t count) {
-  std::int64_t pushed_back = 0;
+  if (static_cast<int>(shares_.size()) != team_.threads()) share_out(team_.threads());
   StepBarrier barrier;
 #pragma omp parallel num_threads(team_.threads())
   {
-    int const thread = omp_get_thread_num(), threads = omp_get_num_threads();
-    Range const own = share(grains_.owned, thread, threads), pairs = share(pairs_.size(), thread, threads);
-    auto const& near_walls = wall_contacts_.grain;
-    auto const wall_entry = [&](std::size_t row) {
-      return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
-                                      near_walls.begin());
-    };
-    Range const walls{wall_entry(own.from), wall_entry(own.to)};
-    Watch watch;
-    std::int64_t pushed = 0;
-    double const dt = motion_.time_step;
+    auto const number = static_cast<std::size_t>(omp_get_thread_num());
+    int const threads = omp_get_num_threads();
+    Share& own = shares_[number];
+    own.watch = {};
+    double way = way_since_choice_, half_gap = half_gap_;  // the same on all threads
     for (std::int64_t s = 0; s < count; ++s) {
-      drift(own.from, own.to);
+      own.pushed_back = 0;
+      std::size_t waits = own.near.from;  // rows below must stay until earlier shares have computed their pairs
+      for (std::size_t k = 0; k < number; ++k) waits = std::clamp(shares_[k].near.reach(), waits, own.near.to);
+      own.held.resize(waits - own.near.from);
+      double const now = static_cast<double>(steps_ + s) * motion_.time_step;
+      double fastest = 0;
+      for (std::size_t chunk = 0; chunk < own.near.chunks(); ++chunk) {
+        evaluate(own, chunk, now);
+        std::size_t const from = own.near.from + chunk * NearPairs::rows_a_chunk,
+                          to = std::min(from + NearPairs::rows_a_chunk, own.near.to),
+                          held = std::clamp(waits, from, to);
+        hold(own, from, held);
+        GrainAction actions[NearPairs::rows_a_chunk];
+        take_from_ring(own.actions.data(), held, to, actions);
+        add_far_actions(number, held, to, actions);
+        fastest = std::max(fastest, move(own, held, to, actions));
+      }
+      barrier.wait(threads);
+      add_far_actions(number, own.near.from, waits, own.held.data());
+      fastest = std::max(fastest, move(own, own.near.from, waits, own.held.data()));
+      own.fastest_squared = fastest;
       barrier.wait(threads);
       if (decomposition_.size() > 1) {
-        if (thread == 0) decomposition_.update_ghosts(grains_);
+        if (number == 0) {
+          decomposition_.update_ghosts(grains_);
+          ghosts_fastest_squared_ = fastest_ghost_squared();
+        }
         barrier.wait(threads);
       }
-      double const now = static_cast<double>(steps_ + s + 1) * dt;
-      double const pair_overlap =
-          evaluate_pairs(pairs_, grains_, motion_.between_grains, rig_.width, dt, pairs.from, pairs.to);
-      WallReport const report = evaluate_walls(wall_contacts_, batches_[static_cast<std::size_t>(thread)], grains_,
-                                               rig_.walls, motion_.at_walls, now, dt, walls.from, walls.to);
-      watch.overlap = std::max({watch.overlap, pair_overlap, report.worst_overlap});
-      pushed = report.pushed_back;
-      barrier.wait(threads);
-      kick(own.from, own.to, watch);
+      fastest = ghosts_fastest_squared_;
+      for (Share const& share : shares_) fastest = std::max(fastest, share.fastest_squared);
+      way += std::sqrt(fastest) * motion_.time_step;
+      if (way > half_gap) {
+        half_gap = suitable_half_gap(fastest);
+        way = 0;
+        choose_near_pairs(own, half_gap);
+        barrier.wait(threads);
+      }
     }
-#pragma omp critical
+#pragma omp single
     {
-      pushed_back += pushed;
-      watch_.overlap = std::max(watch_.overlap, watch.overlap);
-      watch_.step_squared = std::max(watch_.step_squared, watch.step_squared);
-      watch_.broken = std::max(watch_.broken, watch.broken);
+      way_since_choice_ = way;
+      half_gap_ = half_gap;
     }
   }
-  pushed_back_ = pushed_back;
   steps_ += count;
-}
-
-void Simulation::drift(std::size_t from, std::size_t to) {
-  double* __restrict x = grains_.x.data(), * __restrict y = grains_.y.data(), * __restrict z = grains_.z.data();
-  double const* __restrict vx = grains_.vx.data(), * __restrict vy = grains_.vy.data(), * __restrict vz = grains_.vz.data();
-  double const dt = motion_.time_step, width = rig_.width;
-#pragma omp simd
-  for (std::size_t i = from; i < to; ++i) {
-    x[i] += vx[i] * dt;
-    z[i] += vz[i] * dt;
-    double moved = y[i] + vy[i] * dt;
-    moved = moved < 0 ? moved + width : moved;
-    y[i] = moved >= width ? moved - width : moved;
+  pushed_back_ = 0;
+  for (Share const& share : shares_) {
+    pushed_back_ += share.pushed_back;
+    watch_.overlap = std::max(watch_.overlap, share.watch.overlap);
+    watch_.step_squared = std::max(watch_.step_squared, share.watch.step_squared);
+    watch_.broken = std::max(watch_.broken, share.watch.broken);
   }
 }
 
-void Simulation::kick(std::size_t from, std::size_t to, Watch& watch) {
+double Simulation::fastest_ghost_squared() const {
+  double fastest = 0;
+  for (std::size_t i = grains_.owned; i < grains_.size(); ++i)
+    fastest = std::max(fastest, squared(grains_[i].vx, grains_[i].vy, grains_[i].vz));
+  return fastest;
+}
+
+void Simulation::hold(Share& share, std::size_t from, std::size_t to) {
+  take_from_ring(share.actions.data(), from, to, share.held.data() + (from - share.near.from));
+}
+
+void Simulation::add_far_actions(std::size_t number, std::size_t from, std::size_t to, GrainAction* actions) {
+  for (std::size_t k = 0; k <= number; ++k) {
+    auto const& rows = shares_[k].near.far_rows;
+    auto at = std::ranges::lower_bound(rows, static_cast<std::int32_t>(from)) - rows.begin();
+    for (; at < std::ssize(rows) && static_cast<std::size_t>(rows[static_cast<std::size_t>(at)]) < to; ++at) {
+      GrainAction& waiting = shares_[k].actions[static_cast<std::size_t>(NearPairs::far_slot + at)];
+      GrainAction& sum = actions[static_cast<std::size_t>(rows[static_cast<std::size_t>(at)]) - from];
+      for (std::size_t c = 0; c < 3; ++c) sum.force[c] += waiting.force[c];
+      for (std::size_t c = 0; c < 3; ++c) sum.torque[c] += waiting.torque[c];
+      waiting = {};
+    }
+  }
+}
+
+double Simulation::move(Share& own, std::size_t from, std::size_t to, GrainAction const* actions) {
   double const dt = motion_.time_step;
-  Vec3 const gravity = rig_.gravity;
+  double const x_low = std::isfinite(period_.x) ? 0.0 : -period_.x;
+  Vec3 const gravity = rig_.gravity * dt;
   double fastest = 0, broken = 0;
   for (std::size_t i = from; i < to; ++i) {
-    alignas(32) double force[4] = {0, 0, 0, 0};
-    alignas(32) double torque[4] = {0, 0, 0, 0};
-    add_pair_actions(pairs_, i, force, torque);
+    GrainAction const& sum = actions[i - from];
+    double force[3], torque[3];
+    for (std::size_t c = 0; c < 3; ++c)
+      force[c] = static_cast<double>(static_cast<std::int64_t>(sum.force[c])) * unit_.force;
+    for (std::size_t c = 0; c < 3; ++c)
+      torque[c] = static_cast<double>(static_cast<std::int64_t>(sum.torque[c])) * unit_.torque;
     std::int32_t const entry = wall_entry_[i];
     auto const w = static_cast<std::size_t>(entry);
     if (entry >= 0) {
       for (std::size_t c = 0; c < 3; ++c) force[c] += wall_contacts_.force[w][c];
       for (std::size_t c = 0; c < 3; ++c) torque[c] += wall_contacts_.torque[w][c];
     }
-    double const per_mass = dt / grains_.mass[i];
-    double const per_inertia = per_mass / (0.4 * grains_.radius[i] * grains_.radius[i]);
-    grains_.vx[i] += force[0] * per_mass + gravity.x() * dt;
-    grains_.vy[i] += force[1] * per_mass + gravity.y() * dt;
-    grains_.vz[i] += force[2] * per_mass + gravity.z() * dt;
-    grains_.wx[i] += torque[0] * per_inertia;
-    grains_.wy[i] += torque[1] * per_inertia;
-    grains_.wz[i] += torque[2] * per_inertia;
-    double const speed_squared =
-        grains_.vx[i] * grains_.vx[i] + grains_.vy[i] * grains_.vy[i] + grains_.vz[i] * grains_.vz[i];
+    GrainState& g = grains_[i];
+    double const per_mass = dt * g.inverse_mass, per_inertia = dt * g.inverse_inertia;
+    g.vx += force[0] * per_mass + gravity.x();
+    g.vy += force[1] * per_mass + gravity.y();
+    g.vz += force[2] * per_mass + gravity.z();
+    g.wx += torque[0] * per_inertia;
+    g.wy += torque[1] * per_inertia;
+    g.wz += torque[2] * per_inertia;
+    double const x = g.x + g.vx * dt, y = g.y + g.vy * dt;
+    g.x = x < x_low ? x + period_.x : (x >= period_.x ? x - period_.x : x);
+    g.y = y < 0 ? y + period_.y : (y >= period_.y ? y - period_.y : y);
+    g.z += g.vz * dt;
+    double const speed_squared = squared(g.vx, g.vy, g.vz);
     fastest = std::max(fastest, speed_squared);
     if (!(speed_squared < fastest_grain * fastest_grain)) broken = 1;  // NaN too
     if (entry >= 0) wall_contacts_.path[w] += std::sqrt(speed_squared) * dt;
   }
-  watch.step_squared = std::max(watch.step_squared, fastest * dt * dt);
-  watch.broken = std::max(watch.broken, broken);
+  own.watch.step_squared = std::max(own.watch.step_squared, fastest * dt * dt);
+  own.watch.broken = std::max(own.watch.broken, broken);
+  return fastest;
 }
 
 PowderBed Simulation::gather() {
   std::vector<LocalSpring> local;
-  append_springs(pairs_, grains_, local);
-  append_springs(wall_contacts_, grains_, local);
+  append_all_springs(local);
   std::vector<ContactSpring> springs;
   for (LocalSpring const& spring : local) {
     if (static_cast<std::size_t>(spring.row_a) < grains_.owned) springs.push_back(spring.spring);
@@ -226,13 +362,14 @@ PowderBed Simulation::gather() {
 
   PowderBed bed;
   for (GrainRecord const& r : records) {
-    bed.add(r.id, {r.x, r.y, r.z}, r.radius, r.material);
-    bed.vx.back() = r.vx;
-    bed.vy.back() = r.vy;
-    bed.vz.back() = r.vz;
-    bed.wx.back() = r.wx;
-    bed.wy.back() = r.wy;
-    bed.wz.back() = r.wz;
+    GrainState const& g = r.state;
+    bed.add(r.id, {g.x, g.y, g.z}, g.radius, r.material);
+    bed.vx.back() = g.vx;
+    bed.vy.back() = g.vy;
+    bed.vz.back() = g.vz;
+    bed.wx.back() = g.wx;
+    bed.wy.back() = g.wy;
+    bed.wz.back() = g.wz;
   }
   bed.contacts = communicator_.all_gather(springs);
   sort_springs(bed.contacts);
@@ -241,19 +378,22 @@ PowderBed Simulation::gather() {
 
 std::int64_t Simulation::count_faster_than(double speed) const {
   std::int64_t count = 0;
-  for (std::size_t i = 0; i < grains_.owned; ++i) {
-    double const squared =
-        grains_.vx[i] * grains_.vx[i] + grains_.vy[i] * grains_.vy[i] + grains_.vz[i] * grains_.vz[i];
-    count += squared > speed * speed;
-  }
+  for (std::size_t i = 0; i < grains_.owned; ++i)
+    count += squared(grains_[i].vx, grains_[i].vy, grains_[i].vz) > speed * speed;
   return communicator_.sum(count);
 }
 
 std::int64_t Simulation::touching_pairs() const {
-  std::int64_t count = 0;
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    count += pairs_.touching[k] && static_cast<std::size_t>(pairs_.first[k]) < grains_.owned;
+  std::vector<LocalSpring> springs;
+  for (Share const& share : shares_) append_springs(share.near, neighbours_, grains_, springs);
+  // a pair across a border stands on both of its ranks: it is counted where its lower id is at home
+  std::int64_t const count = std::ranges::count_if(
+      springs, [&](LocalSpring const& s) { return static_cast<std::size_t>(s.row_a) < grains_.owned; });
   return communicator_.sum(count);
+}
+
+double Simulation::coordination() const {
+  return 2.0 * static_cast<double>(touching_pairs()) / static_cast<double>(grain_count_);
 }
 
 }  // namespace layerloop::dem

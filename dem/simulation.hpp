@@ -11,6 +11,7 @@
 #include "dem/contact_law.hpp"
 #include "dem/decomposition.hpp"
 #include "dem/grains.hpp"
+#include "dem/neighbours.hpp"
 #include "dem/pair_contacts.hpp"
 #include "dem/thread_team.hpp"
 #include "dem/wall_contacts.hpp"
@@ -22,7 +23,8 @@ namespace layerloop::dem {
 struct Rig {
   Walls walls;
   double width = 1;  ///< period along y [m]; at least two diameters of the largest grain
-  std::array<double, 2> x_range{-1, 1}, z_range{-1, 1};  ///< a centre beyond them is a lost grain [m]
+  double length = std::numeric_limits<double>::infinity();  ///< period along x [m]; infinite: open
+  std::array<double, 2> x_range{-1, 1}, z_range{-1, 1};     ///< a centre beyond them is a lost grain [m]
   /// Grains whose centre passes these are taken out: overflow [m]
   double sink_x = std::numeric_limits<double>::infinity(), sink_z = std::numeric_limits<double>::infinity();
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
@@ -31,9 +33,10 @@ struct Rig {
 /// Settings of the motion; see motion_of() for those of a case.
 struct Motion {
   ContactLaw between_grains, at_walls;
-  ContactSettings contact;  ///< for the guard on the duration of a contact
-  double density = 0;       ///< [kg/m^3]
-  double time_step = 0;     ///< [s]
+  ContactSettings contact;    ///< for the form of the laws, and the guard on the duration of a contact
+  double density = 0;         ///< [kg/m^3]
+  double time_step = 0;       ///< [s]
+  bool grains_sleep = false;  ///< whether grains that lie still are left alone until something moves near them
 };
 
 /// Step: contact.time_step_fraction of the Rayleigh time of the smallest of the case's grains.
@@ -47,9 +50,12 @@ inline constexpr double fastest_grain = 1000;  ///< [m/s]: nothing in a recoater
 /// velocities in a bed are those half a step before its positions; forces see that velocity. A gathered bed holds the
 /// whole state: going on from it gives the same bits as not stopping.
 ///
-/// The same bits for any number of ranks and threads: every rank computes all contacts of its own grains, pairs in
-/// order of id, and adds them up for each grain in order of the partner's id; pairs that do not touch add nothing, so
-/// neither slices nor the time of a rebuild matter.
+/// The same bits for any number of ranks and threads: every rank computes all contacts of its own grains, each with the
+/// lower id first, and adds up forces as whole numbers, whose sum does not depend on the order (ActionUnit).
+///
+/// Cost: grains lie in memory in the order in which they lie in the bed, as records that turn into vectors with few
+/// shuffles. Of the pairs within the skin only those that can touch in the next few steps are computed (NearPairs), and
+/// a chunk of rows moves on as soon as its last pair is done, while it is still in the cache.
 ///
 /// A rigid moving blade nips grains against the edges of the platforms, alone or in a chain (friction holds them in the
 /// wedge). In a machine the blade yields or a grain is cut; here, while a wall moves, a grain that is overlapped by
@@ -82,6 +88,8 @@ class Simulation {
   }  ///< grains taken out because a moving wall crushed them, since scatter
   std::int64_t rebuilds() const { return rebuilds_; }
   std::int64_t touching_pairs() const;  ///< Collective.
+  double coordination() const;          ///< mean number of touching grains of a grain. Collective.
+  void set_gravity(Vec3 const& gravity) { rig_.gravity = gravity; }
   /// Grains faster than `speed` [m/s]. Collective.
   std::int64_t count_faster_than(double speed) const;
 
@@ -106,9 +114,31 @@ class Simulation {
   /// visit(row, other row, overlap over the smaller diameter, null or name of the wall) for every listed pair and wall.
   template <class Visit>
   void for_each_overlap(Visit const& visit) const;
+  /// What one thread does: its rows, the pairs whose lower row is one of them, and what they do to any row.
+  struct Share {
+    NearPairs near, near_before;
+    std::vector<GrainAction> actions;  ///< by slot, see NearPairs
+    std::vector<GrainAction> held;     ///< of the first rows, which must wait for earlier shares
+    WallBatch batch;
+    Watch watch;
+    std::int64_t pushed_back = 0;
+    double fastest_squared = 0;  ///< of the last step
+  };
+
   void run_steps(std::int64_t count);
-  void drift(std::size_t from, std::size_t to);
-  void kick(std::size_t from, std::size_t to, Watch& watch);
+  /// Gives the owned rows to this many shares, equal in pairs, and chooses their near pairs.
+  void share_out(int shares);
+  void choose_near_pairs(Share& share, double half_gap);
+  double suitable_half_gap(double fastest_squared) const;
+  void evaluate(Share& share, std::size_t chunk, double now);
+  /// Takes what was done to rows [from, to) out of the ring, for later.
+  void hold(Share& share, std::size_t from, std::size_t to);
+  /// Adds what waits behind the rings of shares [0, number] for rows [from, to) to actions[row - from].
+  void add_far_actions(std::size_t number, std::size_t from, std::size_t to, GrainAction* actions);
+  /// Moves rows [from, to) on by one step. \return largest speed squared
+  double move(Share& share, std::size_t from, std::size_t to, GrainAction const* actions);
+  double fastest_ghost_squared() const;
+  void append_all_springs(std::vector<LocalSpring>& springs) const;
   std::int64_t look();
   Watch shared_watch();
   /// Throws the worst fault of all ranks, on all of them. Collective.
@@ -125,9 +155,14 @@ class Simulation {
   Decomposition decomposition_;
   TriangleGrid triangle_grid_;
   Grains grains_;
-  PairContacts pairs_;
+  Period period_;
+  LawTable laws_;
+  ActionUnit unit_;
+  Neighbours neighbours_;
+  std::vector<Share> shares_;  ///< one a thread
+  double half_gap_ = 0, way_since_choice_ = 0, ghosts_fastest_squared_ = 0,
+         tear_off_ = 0;  ///< near pairs hold while no grain has gone farther than half_gap_ [m]
   WallContacts wall_contacts_;
-  std::vector<WallBatch> batches_;            ///< one a thread
   std::vector<std::int32_t> wall_entry_;      ///< of each owned grain in wall_contacts_; -1: none
   std::vector<ContactSpring> first_springs_;  ///< of the scattered bed, until the first rebuild
   std::vector<double> x_built_, y_built_, z_built_;

@@ -6,7 +6,7 @@
 namespace layerloop::dem {
 namespace {
 
-Vec3 centre(Grains const& g, std::size_t i) { return {g.x[i], g.y[i], g.z[i]}; }
+Vec3 centre(Grains const& g, std::size_t i) { return {g[i].x, g[i].y, g[i].z}; }
 
 /// The triangles that grain `w` overlaps now, merged; the others are put to sleep for as long as they cannot be
 /// reached.
@@ -18,7 +18,7 @@ void find_touched(WallContacts& contacts, std::size_t w, Grains const& g, Triang
     TriangleCandidate& candidate = contacts.triangles[static_cast<std::size_t>(c)];
     if (candidate.awake_at > contacts.path[w]) continue;
     TriangleContact const contact = contact_with(surface, candidate.triangle, centre(g, i));
-    double const gap = std::abs(contact.distance) - g.radius[i];
+    double const gap = std::abs(contact.distance) - g[i].radius;
     if (gap < 0)
       touched.push_back(contact);
     else
@@ -56,22 +56,22 @@ WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t k
 
 void append(WallBatch& b, Grains const& g, std::size_t i, double distance, Vec3 const& n, double wall_velocity,
             WallSpring const& spring) {
-  double const overlap = g.radius[i] - distance, arm = g.radius[i] - 0.5 * overlap;
+  double const overlap = g[i].radius - distance, arm = g[i].radius - 0.5 * overlap;
   b.overlap.push_back(overlap);
-  b.radius.push_back(g.radius[i]);
-  b.mass.push_back(g.mass[i]);
+  b.radius.push_back(g[i].radius);
+  b.inverse_mass.push_back(g[i].inverse_mass);
   b.nx.push_back(n.x());
   b.ny.push_back(n.y());
   b.nz.push_back(n.z());
-  b.vx.push_back(g.vx[i] - wall_velocity);
-  b.vy.push_back(g.vy[i]);
-  b.vz.push_back(g.vz[i]);
-  b.sx.push_back(arm * g.wx[i]);
-  b.sy.push_back(arm * g.wy[i]);
-  b.sz.push_back(arm * g.wz[i]);
-  b.wx.push_back(g.wx[i]);
-  b.wy.push_back(g.wy[i]);
-  b.wz.push_back(g.wz[i]);
+  b.vx.push_back(g[i].vx - wall_velocity);
+  b.vy.push_back(g[i].vy);
+  b.vz.push_back(g[i].vz);
+  b.sx.push_back(arm * g[i].wx);
+  b.sy.push_back(arm * g[i].wy);
+  b.sz.push_back(arm * g[i].wz);
+  b.wx.push_back(g[i].wx);
+  b.wy.push_back(g[i].wy);
+  b.wz.push_back(g[i].wz);
   b.spring_x.push_back(spring.x);
   b.spring_y.push_back(spring.y);
   b.spring_z.push_back(spring.z);
@@ -79,8 +79,8 @@ void append(WallBatch& b, Grains const& g, std::size_t i, double distance, Vec3 
 }
 
 void clear(WallBatch& b) {
-  for (auto* v : {&b.overlap, &b.radius, &b.mass, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx, &b.sy, &b.sz, &b.wx,
-                  &b.wy, &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
+  for (auto* v : {&b.overlap, &b.radius, &b.inverse_mass, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx, &b.sy, &b.sz,
+                  &b.wx, &b.wy, &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
     v->clear();
   b.key.clear();
 }
@@ -89,7 +89,7 @@ void clear(WallBatch& b) {
 void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   std::size_t const n = b.overlap.size();
   for (auto* v : {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz}) v->resize(n);
-  double const *overlap = b.overlap.data(), *radius = b.radius.data(), *mass = b.mass.data();
+  double const *overlap = b.overlap.data(), *radius = b.radius.data(), *inverse_mass = b.inverse_mass.data();
   double const *nx = b.nx.data(), *ny = b.ny.data(), *nz = b.nz.data();
   double const *vx = b.vx.data(), *vy = b.vy.data(), *vz = b.vz.data();
   double const *sx = b.sx.data(), *sy = b.sy.data(), *sz = b.sz.data();
@@ -101,10 +101,10 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
 #pragma omp simd
   for (std::size_t c = 0; c < n; ++c) {
     double const arm = radius[c] - 0.5 * overlap[c];
-    ContactAction const a = act(law_here,
-                                {overlap[c], radius[c], mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c],
-                                 sz[c], wx[c], wy[c], wz[c], ux[c], uy[c], uz[c]},
-                                dt);
+    ContactAction const a = act<false, RollingModel::cdt>(
+        law_here, {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c],
+                   sz[c],      wx[c],     wy[c],           wz[c], ux[c], uy[c], uz[c], 0,     0,     0,     false},
+        dt);
     ux[c] = a.spring_x;
     uy[c] = a.spring_y;
     uz[c] = a.spring_z;
@@ -121,7 +121,7 @@ std::vector<std::int32_t> blocks_near(Walls const& walls, Grains const& g, std::
   std::vector<std::int32_t> near;
   for (std::size_t b = 0; b < walls.blocks.size(); ++b) {
     RoundedBlock const& block = walls.blocks[b];
-    if (nearest(block, block.velocity * time, g.x[i], g.z[i]).distance < g.radius[i] + skin)
+    if (nearest(block, block.velocity * time, g[i].x, g[i].z).distance < g[i].radius + skin)
       near.push_back(static_cast<std::int32_t>(b));
   }
   return near;
@@ -130,8 +130,8 @@ std::vector<std::int32_t> blocks_near(Walls const& walls, Grains const& g, std::
 }  // namespace
 
 void WallBatch::reserve(std::size_t contacts) {
-  for (auto* v : {&overlap, &radius, &mass, &nx,       &ny,       &nz,       &vx, &vy, &vz, &sx, &sy, &sz,
-                  &wx,      &wy,     &wz,   &spring_x, &spring_y, &spring_z, &fx, &fy, &fz, &tx, &ty, &tz})
+  for (auto* v : {&overlap, &radius, &inverse_mass, &nx,       &ny,       &nz,       &vx, &vy, &vz, &sx, &sy, &sz,
+                  &wx,      &wy,     &wz,           &spring_x, &spring_y, &spring_z, &fx, &fy, &fz, &tx, &ty, &tz})
     v->reserve(contacts);
   key.reserve(contacts);
   touched.reserve(256);
@@ -147,7 +147,7 @@ void build_wall_contacts(WallContacts& contacts, Grains const& g, Walls const& w
   std::vector<std::int32_t> triangles;
   for (std::size_t i = 0; i < g.owned; ++i) {
     std::vector<std::int32_t> const blocks = blocks_near(walls, g, i, skin, time);
-    double const reach = g.radius[i] + skin;
+    double const reach = g[i].radius + skin;
     grid.find(centre(g, i), reach, triangles);
     std::erase_if(triangles, [&](std::int32_t t) {
       return std::abs(contact_with(walls.substrate, t, centre(g, i)).distance) >= reach;
@@ -197,8 +197,8 @@ WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const
     for (std::int32_t b = c.block_begin[w]; b < c.block_begin[w + 1]; ++b) {
       std::int32_t const key = c.blocks[static_cast<std::size_t>(b)];
       RoundedBlock const& block = walls.blocks[static_cast<std::size_t>(key)];
-      WallPoint const near = nearest(block, block.velocity * time, g.x[i], g.z[i]);
-      if (near.distance < g.radius[i])
+      WallPoint const near = nearest(block, block.velocity * time, g[i].x, g[i].z);
+      if (near.distance < g[i].radius)
         append(batch, g, i, near.distance, {near.nx, 0, near.nz}, block.velocity,
                inherited(c, w, key, batch.touched, walls.substrate));
     }
@@ -211,7 +211,7 @@ WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const
   std::size_t at = 0;
   for (std::size_t w = from; w < to; ++w) {
     c.force[w] = c.torque[w] = {};
-    double const diameter = 2 * g.radius[static_cast<std::size_t>(c.grain[w])];
+    double const diameter = 2 * g[static_cast<std::size_t>(c.grain[w])].radius;
     for (std::int32_t s = 0; s < c.spring_count[w]; ++s, ++at) {
       c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)] = {batch.key[at], batch.spring_x[at],
                                                                     batch.spring_y[at], batch.spring_z[at]};

@@ -39,7 +39,7 @@ struct WallContacts {
 
 /// Contacts of one thread's grains in one step, as arrays. Room for all candidates.
 struct WallBatch {
-  std::vector<double> overlap, radius, mass, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x, spring_y,
+  std::vector<double> overlap, radius, inverse_mass, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x, spring_y,
       spring_z;
   std::vector<double> fx, fy, fz, tx, ty, tz;
   std::vector<std::int64_t> key;

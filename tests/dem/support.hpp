@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "core/case.hpp"
+#include "core/rayleigh_time.hpp"
 #include "core/triangle_surface.hpp"
 #include "dem/simulation.hpp"
 
