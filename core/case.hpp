@@ -45,6 +45,11 @@ struct ContactSettings {
   Cohesion cohesion = Cohesion::sjkr2;
   double cohesion_energy_density = 0;  ///< sjkr, sjkr2 [J/m^3]
   double surface_energy = 0;           ///< jkr, dmt: of one surface; two of them touch [J/m^2]
+  double liquid_volume = 0;            ///< effect capillary_bridge: of a bridge over (2 R*)^3; 0: dry
+  double surface_tension = 0.072;      ///< of that liquid [N/m]
+  double contact_angle = 0;            ///< of that liquid on the metal [rad]
+  double charge_density = 0;           ///< effect electrostatic_charge [C/m^2]
+  double gas_viscosity = 0;            ///< effect gas_drag [Pa s]
   double wall_friction = 0;
   WallCohesionArea wall_cohesion_area = WallCohesionArea::liggghts;
   CoulombOn coulomb_on = CoulombOn::repulsive;

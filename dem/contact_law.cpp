@@ -1,10 +1,12 @@
 #include "dem/contact_law.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 namespace layerloop::dem {
 namespace {
 using std::numbers::pi;
+constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 
 /// Two bodies of the same material.
 double reduced_youngs_modulus(ContactSettings const& contact) {
@@ -39,20 +41,33 @@ ContactLaw law_between(ContactSettings const& contact, double friction, double a
     law.cohesion = contact.cohesion_energy_density * (contact.cohesion == Cohesion::sjkr ? 0.5 : 1.0) * area;
   if (contact.cohesion == Cohesion::dmt) law.pull_off = 2 * pi * work;
   if (contact.cohesion == Cohesion::jkr) law.adhesion = std::sqrt(2 * pi * work / E);
+  if (contact.liquid_volume > 0) {  // of a share of the cube of the radius 2 R
+    law.bridge = {.force = 4 * pi * contact.surface_tension * std::cos(contact.contact_angle),
+                  .steepness = 0.5 / std::sqrt(contact.liquid_volume),
+                  .rupture = 2 * (1 + 0.5 * contact.contact_angle) * std::cbrt(contact.liquid_volume)};
+  }
   if (contact.restitution_form == RestitutionForm::clamped) law.least_normal = 0;
   return law;
 }
 }  // namespace
 
 LawForm law_form(ContactSettings const& contact) {
-  return {.jkr = contact.cohesion == Cohesion::jkr, .rolling = contact.rolling_model};
+  bool const beyond = contact.liquid_volume > 0 || contact.charge_density > 0;
+  Reach const attraction = contact.cohesion == Cohesion::jkr ? Reach::tear_off : Reach::touch;
+  return {.reach = beyond ? Reach::beyond : attraction, .rolling = contact.rolling_model};
 }
 
-ContactLaw grain_law(ContactSettings const& contact) { return law_between(contact, contact.sliding_friction, 4 * pi); }
+ContactLaw grain_law(ContactSettings const& contact) {
+  ContactLaw law = law_between(contact, contact.sliding_friction, 4 * pi);
+  law.charge = -4 * pi * contact.charge_density * contact.charge_density / vacuum_permittivity;
+  return law;
+}
 
 ContactLaw wall_law(ContactSettings const& contact) {
   double const area = contact.wall_cohesion_area == WallCohesionArea::eq6 ? 4 * pi : 2 * pi;
-  return law_between(contact, contact.wall_friction, area);
+  ContactLaw law = law_between(contact, contact.wall_friction, area);
+  law.charge = pi * contact.charge_density * contact.charge_density / vacuum_permittivity;  // image in a conductor
+  return law;
 }
 
 double hertz_contact_time(double radius, double density, double speed, ContactSettings const& contact) {
@@ -70,8 +85,9 @@ double bond_number(double radius, double density, ContactSettings const& contact
   return pull_off / (grain_mass(radius, density) * 9.81);
 }
 
-double tear_off_gap(ContactLaw const& law, double reduced_radius) {
-  return 0.75 * law.adhesion * std::cbrt(law.adhesion * reduced_radius / 4);
+double reach_gap(ContactLaw const& law, double reduced_radius) {
+  double const tear_off = 0.75 * law.adhesion * std::cbrt(law.adhesion * reduced_radius / 4);
+  return std::max({tear_off, law.bridge.rupture * reduced_radius, law.charge != 0 ? reduced_radius : 0.0});
 }
 
 }  // namespace layerloop::dem

@@ -5,6 +5,14 @@
 
 namespace layerloop::dem {
 
+/// Liquid between two bodies: F = force R / (1 + 1.05 S + 2.5 S^2), S = steepness gap / R, up to a gap of rupture R
+/// (Willett et al., Langmuir 16 (2000) 9396, eq. for small volumes, with 2 R for the radius of equal spheres).
+struct LiquidBridge {
+  double force = 0;  ///< [N/m]
+  double steepness = 0;
+  double rupture = 0;
+};
+
 /// Hertz-Mindlin contact with history and restitution-exact damping, as prefactors, and what is added to it.
 ///
 /// With the overlap d, the reduced radius R and mass m, and the contact radius a = sqrt(R d) (JKR: from d, below):
@@ -31,14 +39,19 @@ struct ContactLaw {
   double cohesion = 0;             ///< sjkr, sjkr2: attraction / (R d) [Pa]
   double pull_off = 0;             ///< dmt: attraction / R, 2 pi W [N/m]
   double adhesion = 0;             ///< jkr: c = sqrt(2 pi W / E) in d = a^2/R - c sqrt(a) [sqrt(m)]
+  LiquidBridge bridge = {};        ///< forms on touch, and holds until it ruptures
+  double charge = 0;               ///< attraction / (r_1 r_2 / distance)^2; grains of like charge: negative [N/m^2]
   double adhesion_in_coulomb = 0;  ///< 1 where the Coulomb bound takes the total normal force, else 0
   double least_normal = -1e300;    ///< normal force before attraction is at least this: 0 when clamped [N]
   double keeps_spring = 0;         ///< 1 where a sliding contact keeps its spring, 0 where it rescales it
 };
 
+/// How far attraction reaches: to touch; to where a JKR contact tears; beyond touch (bridges, charge).
+enum class Reach { touch, tear_off, beyond };
+
 /// Which code a contact needs, beyond prefactors: chosen once, outside the loops.
 struct LawForm {
-  bool jkr = false;  ///< attraction acts beyond touch, and the contact radius is not sqrt(R d)
+  Reach reach = Reach::touch;
   RollingModel rolling = RollingModel::cdt;
   friend bool operator==(LawForm const&, LawForm const&) = default;
 };
@@ -59,8 +72,9 @@ double hertz_contact_time(double radius, double density, double speed, ContactSe
 /// Pull-off force over weight, for two equal grains. sjkr, sjkr2: (16 pi^3/3) k^3 R^2 / E^2 (sjkr: 1/8 of it);
 /// dmt: 2 pi W R; jkr: 3/2 pi W R.
 double bond_number(double radius, double density, ContactSettings const& contact);
-/// Largest gap at which a contact still holds [m]: 0 but for jkr, where it tears at 3/4 (pi^2 W^2 R / E^2)^(1/3).
-double tear_off_gap(ContactLaw const& law, double reduced_radius);
+/// Largest gap at which something still acts [m]: jkr tears at 3/4 (pi^2 W^2 R / E^2)^(1/3), a bridge ruptures, charge
+/// is cut off at a radius.
+double reach_gap(ContactLaw const& law, double reduced_radius);
 
 /// Geometry and motion of one pair. The normal points from the second body to the first.
 struct ContactState {
@@ -71,6 +85,7 @@ struct ContactState {
   double wx, wy, wz;  ///< spin of the first relative to the second [rad/s]
   double spring_x, spring_y, spring_z;
   double turn_x, turn_y, turn_z;  ///< epsd2: rolling angle that is stored [rad]
+  double closeness;               ///< (r_1 r_2 / distance)^2, for charge [m^2]
   bool was_touching;
 };
 
@@ -87,7 +102,7 @@ struct ContactAction {
 /// Contact radius and forces along the normal, before damping.
 struct NormalForce {
   double contact_radius, elastic, attraction;
-  bool touches;
+  bool touches;  ///< or is held by a bridge
 };
 
 [[gnu::always_inline]] inline NormalForce hertz(ContactLaw const& law, ContactState const& c) {
@@ -96,6 +111,18 @@ struct NormalForce {
   bool const touches = c.overlap > 0.0;
   return {a, law.normal_stiffness * a * overlap, law.cohesion * area + (touches ? law.pull_off * c.radius : 0.0),
           touches};
+}
+
+/// As hertz(), with what acts before and after touch.
+[[gnu::always_inline]] inline NormalForce beyond_touch(ContactLaw const& law, ContactState const& c) {
+  NormalForce force = hertz(law, c);
+  double const gap = c.overlap < 0.0 ? -c.overlap : 0.0;
+  bool const bridged = force.touches || (c.was_touching && gap < law.bridge.rupture * c.radius);
+  double const s = law.bridge.steepness * gap / c.radius;
+  double const pull = law.bridge.force * c.radius / (1.0 + 1.05 * s + 2.5 * s * s);
+  force.attraction += (bridged ? pull : 0.0) + (gap < c.radius ? law.charge * c.closeness : 0.0);
+  force.touches = bridged;
+  return force;
 }
 
 /// Newton's iteration for b = sqrt(a) in b^4/R - c b = d, from above, where it converges monotonically to the stable
@@ -119,9 +146,10 @@ struct NormalForce {
 }
 
 /// Straight-line code without branches, so that a loop over contacts becomes vector instructions.
-template <bool is_jkr, RollingModel rolling_model>
+template <Reach reach, RollingModel rolling_model>
 [[gnu::always_inline]] inline ContactAction act(ContactLaw const& law, ContactState const& c, double dt) {
-  NormalForce const along = is_jkr ? jkr(law, c) : hertz(law, c);
+  NormalForce const along =
+      reach == Reach::touch ? hertz(law, c) : (reach == Reach::tear_off ? jkr(law, c) : beyond_touch(law, c));
   double const a = along.contact_radius, viscous = std::sqrt(a / c.inverse_mass);
 
   double const vn = c.vx * c.nx + c.vy * c.ny + c.vz * c.nz;
@@ -149,7 +177,7 @@ template <bool is_jkr, RollingModel rolling_model>
   double const gx = -(pull * ux + viscosity * tx);
   double const gy = -(pull * uy + viscosity * ty);
   double const gz = -(pull * uz + viscosity * tz);
-  double const kept = along.touches ? (law.keeps_spring > 0.0 ? 1.0 : carried) : 0.0;
+  double const kept = along.touches && a > 0.0 ? (law.keeps_spring > 0.0 ? 1.0 : carried) : 0.0;
 
   ContactAction action;
   action.fx = normal * c.nx + gx;
@@ -178,7 +206,7 @@ template <bool is_jkr, RollingModel rolling_model>
     double const along_n = px * c.nx + py * c.ny + pz * c.nz;
     double const qx = px - along_n * c.nx, qy = py - along_n * c.ny, qz = pz - along_n * c.nz;
     double const spring = stiffness * c.radius * c.radius, torque = spring * std::sqrt(qx * qx + qy * qy + qz * qz);
-    double const share = torque > most ? most / torque : 1.0, left = along.touches ? share : 0.0;
+    double const share = torque > most ? most / torque : 1.0, left = along.touches && a > 0.0 ? share : 0.0;
     action.turn_x = left * qx;
     action.turn_y = left * qy;
     action.turn_z = left * qz;

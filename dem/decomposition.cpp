@@ -142,6 +142,15 @@ void Decomposition::update_ghosts(Grains& grains) {
   std::ranges::copy(receive_buffer_, grains.state.begin() + static_cast<std::ptrdiff_t>(grains.owned));
 }
 
+void Decomposition::update_ghost_sleep(Grains& grains) const {
+  if (size() == 1) return;
+  std::vector<std::vector<std::int32_t>> to_rank(sent_rows_.size());
+  for (std::size_t r = 0; r < sent_rows_.size(); ++r)
+    for (std::int32_t const row : sent_rows_[r]) to_rank[r].push_back(grains.quiet[static_cast<std::size_t>(row)]);
+  std::ranges::copy(joined(exchange(communicator_, to_rank)),
+                    grains.quiet.begin() + static_cast<std::ptrdiff_t>(grains.owned));
+}
+
 bool Decomposition::is_within(double x, double low, double high) const {
   if (x >= low && x <= high) return true;
   return std::isfinite(period_) &&

@@ -24,6 +24,9 @@ class Decomposition {
   /// Brings position, velocity and spin of the ghosts up to date. Collective; allocates nothing.
   void update_ghosts(Grains& grains);
 
+  /// Tells which ghosts are asleep. Collective.
+  void update_ghost_sleep(Grains& grains) const;
+
   int size() const { return communicator_.size(); }
   int ranks_on_node() const { return ranks_on_node_; }  ///< that share this rank's cores
 

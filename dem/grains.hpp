@@ -14,9 +14,9 @@ struct alignas(32) GrainState {
   double wx, wy, wz, inverse_inertia;  ///< [rad/s], [1/(kg m^2)]
 };
 
-/// Looks (every 20 steps) at which a grain must lie still, one after the other, before it falls asleep.
-inline constexpr std::int32_t looks_until_sleep = 200;
-constexpr bool is_asleep(std::int32_t quiet_looks) { return quiet_looks >= looks_until_sleep; }
+/// A grain that has lain still at so many checks in a row falls asleep (dem/sleep.hpp).
+inline constexpr std::int32_t checks_until_sleep = 40;
+constexpr bool is_asleep(std::int32_t quiet_checks) { return quiet_checks >= checks_until_sleep; }
 
 /// One grain on its way from rank to rank.
 struct GrainRecord {
@@ -24,7 +24,7 @@ struct GrainRecord {
   std::int64_t id;
   std::int32_t material;
   std::int32_t leaves;  ///< 1: on its way out of the simulation
-  std::int32_t quiet;   ///< looks at which it has lain still without a break; stays 0 where grains do not sleep
+  std::int32_t quiet;   ///< checks in a row at which it lay still; stays 0 where grains do not sleep
 };
 
 /// The grains that one rank works on: rows [0, owned) are its own, the rest are ghosts, copies of grains of other ranks

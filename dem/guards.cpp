@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "dem/simulation.hpp"
+#include "dem/sleep.hpp"
 
 namespace layerloop::dem {
 namespace {
@@ -78,11 +79,27 @@ std::int64_t Simulation::look() {
     return static_cast<std::int64_t>(std::min(way / expected, static_cast<double>(steps_between_looks)));
   };
   std::int64_t steps = steps_left(0.5 * skin_ - moved);
+  if (motion_.grains_sleep) check_sleep();
   if (steps < steps_between_looks) {
     rebuild();
     steps = std::max<std::int64_t>(1, steps_left(0.5 * skin_));
   }
   return steps;
+}
+
+void Simulation::check_sleep() {
+  if (steps_ < next_sleep_check_) return;
+  next_sleep_check_ = steps_ + steps_between_checks;
+  std::vector<char> near_moving_wall(grains_.owned, 0);
+  for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w) {
+    auto const row = static_cast<std::size_t>(wall_contacts_.grain[w]);
+    near_moving_wall[row] = is_near_moving_wall(wall_contacts_, w, rig_.walls);
+  }
+  double const interval = static_cast<double>(steps_between_checks + steps_between_looks) * motion_.time_step;
+  bool const changed = update_sleep(grains_, neighbours_, near_moving_wall, period_, interval);
+  if (!communicator_.any(changed)) return;
+  decomposition_.update_ghost_sleep(grains_);
+  share_out(team_.threads());
 }
 
 std::int64_t Simulation::take_out(std::vector<char> const& leaves) {

@@ -61,11 +61,12 @@ struct Springs {
   double *x, *y, *z, *turn_x, *turn_y, *turn_z;
 };
 
+double square(double x) { return x * x; }
 std::int64_t whole(double value, double per_unit) { return static_cast<std::int64_t>(value * per_unit); }
 
 /// Lanes [0, count) of a block: what every pair does to its grains.
 /// \return largest overlap over the smaller grain's diameter
-template <bool is_jkr, RollingModel rolling, bool many_laws>
+template <Reach reach, RollingModel rolling, bool many_laws>
 double act_on(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, Period const& period,
               double dt, ActionUnit const& unit) {
   GrainLanes const &a = pairs.first, &b = pairs.second;
@@ -110,8 +111,9 @@ double act_on(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw 
                              has_turn ? ox[l] : 0.0,
                              has_turn ? oy[l] : 0.0,
                              has_turn ? oz[l] : 0.0,
-                             is_jkr && touching[l] != 0};
-    ContactAction const c = act<is_jkr, rolling>(law, state, dt);
+                             reach == Reach::beyond ? square(ra * rb * inverse) : 0.0,
+                             reach != Reach::touch && touching[l] != 0};
+    ContactAction const c = act<reach, rolling>(law, state, dt);
     ux[l] = c.spring_x;
     uy[l] = c.spring_y;
     uz[l] = c.spring_z;
@@ -138,11 +140,23 @@ double act_on(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw 
 using ActOn = double (*)(PairBlock&, std::size_t, Springs const&, ContactLaw const*, Period const&, double,
                          ActionUnit const&);
 
+template <Reach reach, bool many_laws>
+ActOn kernel(RollingModel rolling) {
+  return rolling == RollingModel::cdt ? act_on<reach, RollingModel::cdt, many_laws>
+                                      : act_on<reach, RollingModel::epsd2, many_laws>;
+}
+
 template <bool many_laws>
 ActOn kernel(LawForm const& form) {
-  constexpr auto cdt = RollingModel::cdt, epsd2 = RollingModel::epsd2;
-  if (form.jkr) return form.rolling == cdt ? act_on<true, cdt, many_laws> : act_on<true, epsd2, many_laws>;
-  return form.rolling == cdt ? act_on<false, cdt, many_laws> : act_on<false, epsd2, many_laws>;
+  switch (form.reach) {
+    case Reach::touch:
+      return kernel<Reach::touch, many_laws>(form.rolling);
+    case Reach::tear_off:
+      return kernel<Reach::tear_off, many_laws>(form.rolling);
+    case Reach::beyond:
+      break;
+  }
+  return kernel<Reach::beyond, many_laws>(form.rolling);
 }
 
 }  // namespace

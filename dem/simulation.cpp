@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "core/error.hpp"
@@ -61,7 +62,7 @@ Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
 void Simulation::scatter(PowderBed const& bed) {
   grains_.clear();
   first_springs_ = bed.contacts;
-  steps_ = next_sink_check_ = rebuilds_ = nipped_ = 0;
+  steps_ = next_sink_check_ = next_sleep_check_ = rebuilds_ = nipped_ = 0;
   largest_overlap_ = blade_force_ = 0;
   watch_ = {};
   if (bed.size() == 0) throw InputError("there is no grain to move (the bed is empty) raise powder.particles");
@@ -69,15 +70,15 @@ void Simulation::scatter(PowderBed const& bed) {
   smallest_radius_ = smallest;
   largest_radius_ = largest;
   skin_ = skin_over_smallest_radius * smallest;
-  if (rig_.width < 4 * largest + 2 * skin_) {
+  reach_ = std::max(reach_gap(motion_.between_grains, largest), reach_gap(motion_.at_walls, largest));
+  if (rig_.width < 4 * largest + 2 * (skin_ + reach_)) {
     throw InputError(
         fmt::format("the bed is {:.3g} um wide (a grain of {:.3g} um would meet itself around the period) "
                     "make machine.width at least {:.3g} um",
-                    rig_.width * 1e6, 2e6 * largest, 4.2e6 * largest + 2e6 * skin_));
+                    rig_.width * 1e6, 2e6 * largest, 4.2e6 * largest + 2e6 * (skin_ + reach_)));
   }
-  if (rig_.length < 4 * largest + 2 * skin_)
+  if (rig_.length < 4 * largest + 2 * (skin_ + reach_))
     throw InputError("the period along x is shorter than two grains (a grain would meet itself) use a longer one");
-  tear_off_ = tear_off_gap(motion_.between_grains, largest);
   unit_ = ActionUnit(motion_.between_grains.normal_stiffness, largest);
   triangle_grid_ = TriangleGrid(rig_.walls.substrate, 2 * largest);
   Range const own = share(bed.size(), communicator_.rank(), communicator_.size());
@@ -119,11 +120,11 @@ void Simulation::rebuild() {
   grains_.clear();
   for (GrainRecord const& record : records) grains_.push_back(record);
   grains_.owned = grains_.size();
-  decomposition_.add_ghosts(grains_, 2 * largest_radius_ + skin_);
+  decomposition_.add_ghosts(grains_, 2 * largest_radius_ + skin_ + reach_);
   grains_.close();
 
-  build_neighbours(neighbours_, grains_, skin_, period_, springs);
-  build_wall_contacts(wall_contacts_, grains_, rig_.walls, triangle_grid_, skin_, time(), springs);
+  build_neighbours(neighbours_, grains_, skin_ + reach_, period_, springs);
+  build_wall_contacts(wall_contacts_, grains_, rig_.walls, triangle_grid_, skin_ + reach_, time(), springs);
   wall_entry_.assign(grains_.owned, -1);
   for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w)
     wall_entry_[static_cast<std::size_t>(wall_contacts_.grain[w])] = static_cast<std::int32_t>(w);
@@ -196,7 +197,7 @@ void Simulation::choose_near_pairs(Share& share, double half_gap) {
   std::swap(share.near, share.near_before);
   share.near.from = share.near_before.from;
   share.near.to = share.near_before.to;
-  choose_near(share.near, neighbours_, grains_, period_, 2 * half_gap + tear_off_,
+  choose_near(share.near, neighbours_, grains_, period_, 2 * half_gap + reach_,
               laws_.form.rolling == RollingModel::epsd2, share.near_before, share.near_before.dormant);
   share.actions.assign(share.near.slots(), {});
 }
@@ -312,8 +313,10 @@ double Simulation::move(Share& own, std::size_t from, std::size_t to, GrainActio
   double const dt = motion_.time_step;
   double const x_low = std::isfinite(period_.x) ? 0.0 : -period_.x;
   Vec3 const gravity = rig_.gravity * dt;
+  double const drag = 6 * std::numbers::pi * motion_.contact.gas_viscosity * dt;  // Stokes, of gas at rest
   double fastest = 0, broken = 0;
   for (std::size_t i = from; i < to; ++i) {
+    if (is_asleep(grains_.quiet[i])) continue;
     GrainAction const& sum = actions[i - from];
     double force[3], torque[3];
     for (std::size_t c = 0; c < 3; ++c)
@@ -328,9 +331,10 @@ double Simulation::move(Share& own, std::size_t from, std::size_t to, GrainActio
     }
     GrainState& g = grains_[i];
     double const per_mass = dt * g.inverse_mass, per_inertia = dt * g.inverse_inertia;
-    g.vx += force[0] * per_mass + gravity.x();
-    g.vy += force[1] * per_mass + gravity.y();
-    g.vz += force[2] * per_mass + gravity.z();
+    double const slowed = 1 + drag * g.radius * g.inverse_mass;  // 1 without gas: changes no bit then
+    g.vx = (g.vx + (force[0] * per_mass + gravity.x())) / slowed;
+    g.vy = (g.vy + (force[1] * per_mass + gravity.y())) / slowed;
+    g.vz = (g.vz + (force[2] * per_mass + gravity.z())) / slowed;
     g.wx += torque[0] * per_inertia;
     g.wy += torque[1] * per_inertia;
     g.wz += torque[2] * per_inertia;
@@ -389,6 +393,12 @@ std::int64_t Simulation::touching_pairs() const {
   // a pair across a border stands on both of its ranks: it is counted where its lower id is at home
   std::int64_t const count = std::ranges::count_if(
       springs, [&](LocalSpring const& s) { return static_cast<std::size_t>(s.row_a) < grains_.owned; });
+  return communicator_.sum(count);
+}
+
+std::int64_t Simulation::sleeping() const {
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < grains_.owned; ++i) count += is_asleep(grains_.quiet[i]);
   return communicator_.sum(count);
 }
 

@@ -88,6 +88,7 @@ class Simulation {
   }  ///< grains taken out because a moving wall crushed them, since scatter
   std::int64_t rebuilds() const { return rebuilds_; }
   std::int64_t touching_pairs() const;  ///< Collective.
+  std::int64_t sleeping() const;        ///< Collective.
   double coordination() const;          ///< mean number of touching grains of a grain. Collective.
   void set_gravity(Vec3 const& gravity) { rig_.gravity = gravity; }
   /// Grains faster than `speed` [m/s]. Collective.
@@ -140,6 +141,7 @@ class Simulation {
   double fastest_ghost_squared() const;
   void append_all_springs(std::vector<LocalSpring>& springs) const;
   std::int64_t look();
+  void check_sleep();
   Watch shared_watch();
   /// Throws the worst fault of all ranks, on all of them. Collective.
   [[noreturn]] void fail(Fault const& own);
@@ -161,7 +163,7 @@ class Simulation {
   Neighbours neighbours_;
   std::vector<Share> shares_;  ///< one a thread
   double half_gap_ = 0, way_since_choice_ = 0, ghosts_fastest_squared_ = 0,
-         tear_off_ = 0;  ///< near pairs hold while no grain has gone farther than half_gap_ [m]
+         reach_ = 0;  ///< near pairs hold while no grain has gone farther than half_gap_ [m]
   WallContacts wall_contacts_;
   std::vector<std::int32_t> wall_entry_;      ///< of each owned grain in wall_contacts_; -1: none
   std::vector<ContactSpring> first_springs_;  ///< of the scattered bed, until the first rebuild
@@ -169,7 +171,8 @@ class Simulation {
   Watch watch_;
   double time_built_ = 0, skin_ = 0, smallest_radius_ = 0, largest_radius_ = 0, fastest_wall_ = 0;
   double largest_overlap_ = 0, blade_force_ = 0;
-  std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, pushed_back_ = 0, next_sink_check_ = 0;
+  std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, pushed_back_ = 0, next_sink_check_ = 0,
+               next_sleep_check_ = 0;
   ThreadTeam team_;
 };
 

@@ -101,9 +101,10 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
 #pragma omp simd
   for (std::size_t c = 0; c < n; ++c) {
     double const arm = radius[c] - 0.5 * overlap[c];
-    ContactAction const a = act<false, RollingModel::cdt>(
-        law_here, {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c],
-                   sz[c],      wx[c],     wy[c],           wz[c], ux[c], uy[c], uz[c], 0,     0,     0,     false},
+    ContactAction const a = act<Reach::touch, RollingModel::cdt>(
+        law_here,
+        {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c], sz[c],
+         wx[c],      wy[c],     wz[c],           ux[c], uy[c], uz[c], 0,     0,     0,     0,     false},
         dt);
     ux[c] = a.spring_x;
     uy[c] = a.spring_y;
@@ -183,6 +184,12 @@ void append_springs(WallContacts const& c, Grains const& g, std::vector<LocalSpr
                          -1});
     }
   }
+}
+
+bool is_near_moving_wall(WallContacts const& c, std::size_t w, Walls const& walls) {
+  auto const begin = c.blocks.begin();
+  return std::any_of(begin + c.block_begin[w], begin + c.block_begin[w + 1],
+                     [&](std::int32_t block) { return walls.blocks[static_cast<std::size_t>(block)].velocity != 0; });
 }
 
 WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, Walls const& walls,

@@ -59,6 +59,9 @@ void build_wall_contacts(WallContacts& contacts, Grains const& grains, Walls con
 
 void append_springs(WallContacts const& contacts, Grains const& grains, std::vector<LocalSpring>& springs);
 
+/// Is a wall that moves among the candidates of grain `w` of the list?
+bool is_near_moving_wall(WallContacts const& contacts, std::size_t w, Walls const& walls);
+
 /// Contacts of the grains [from, to) of the list. No allocation once the batch has grown.
 WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& grains, Walls const& walls,
                           ContactLaw const& law, double time, double dt, std::size_t from, std::size_t to);

@@ -205,7 +205,7 @@ double normal_force(ContactLaw const& law, double reduced_radius, double overlap
   state.radius = reduced_radius;
   state.inverse_mass = 1e11;
   state.nx = 1;
-  return act<false, RollingModel::cdt>(law, state, 1e-8).fx;
+  return act<Reach::touch, RollingModel::cdt>(law, state, 1e-8).fx;
 }
 
 TEST(Cohesion, PullOffForceOfSjkr2) {
@@ -267,9 +267,9 @@ TEST(Coulomb, BoundOnTotalForceLeavesCohesionOut) {
   state.spring_y = 1e-6;  // far beyond the bound
   double const bare = normal_force(grain_law(plain_contact()), state.radius, state.overlap);
   double const total = normal_force(grain_law(contact), state.radius, state.overlap);
-  EXPECT_NEAR((-act<false, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * bare, 1e-9 * bare);
+  EXPECT_NEAR((-act<Reach::touch, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * bare, 1e-9 * bare);
   contact.coulomb_on = CoulombOn::total;
-  EXPECT_NEAR((-act<false, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * std::abs(total), 1e-9 * bare);
+  EXPECT_NEAR((-act<Reach::touch, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * std::abs(total), 1e-9 * bare);
 }
 
 TEST(RayleighTime, OfTheThesis) {
