@@ -107,11 +107,12 @@ std::int64_t count_frames(BedText text) {
 }  // namespace
 
 BedFile read_bed_dump(BedText text, std::optional<std::int64_t> frame) {
-  std::int64_t const frames = count_frames(text), wanted = frame.value_or(frames - 1);
+  std::int64_t const frames = std::max<std::int64_t>(count_frames(text), 1), wanted = frame.value_or(frames - 1);
   if (wanted < 0 || wanted >= frames)
     text.refuse("frame {} of a dump with {} (frames count from 0) choose another", wanted, frames);
   for (std::int64_t k = 0; k < wanted; ++k) read_frame(text, false);
   std::optional<Frame> found = read_frame(text, true);
+  if (!found) text.refuse("no ITEM: ATOMS in the file (not one whole frame) dump again");
   found->file.bed = bed_of(text, std::move(found->rows));
   return std::move(found->file);
 }

@@ -33,7 +33,7 @@ struct PowderSettings {
   std::vector<double> diameters;  ///< [m]
   std::vector<double> fractions;  ///< sum 1, by `basis`
   std::int64_t particles = 0;     ///< grains fed before the first layer
-  std::string bed;                ///< file of grains that are in the machine before the first layer; empty: none
+  std::string bed = "";           ///< file of grains that are in the machine before the first layer; empty: none
 };
 
 struct ContactSettings {

@@ -62,7 +62,8 @@ std::vector<CaseKey> powder_rows() {
        "Grains fed into the accumulation zone before the first layer."},
       {"powder", "bed", at<powder, &P::bed>, D::none, {}, Need::never, "\"\"",
        "File of grains (csv, LIGGGHTS or LAMMPS dump, extxyz, h5; coordinates of the machine) that are there before the "
-       "first layer: those in the accumulation zone join the feed, those in the deposition zone lie on the plate."},
+       "first layer: those in the accumulation zone join the feed, those in the deposition zone lie on the plate, whose top "
+       "is at z = 0 then."},
 
       {"contact", "youngs_modulus", at<contact, &C::youngs_modulus>, D::pressure, {1e6, 1e12}, Need::always, "",
        "Young's modulus of a grain; softened values (0.2 GPa) allow longer time steps."},
