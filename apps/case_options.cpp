@@ -31,11 +31,11 @@ void add_case_options(CLI::App& verb, CaseOptions& options) {
       ->check(CLI::Range(1, 1024));
 }
 
-Case read_case(CaseOptions const& options) {
+Case read_case(CaseOptions const& options, std::optional<Process> process) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
   omp_set_num_threads(options.threads > 0 ? options.threads : cores_per_rank());
-  return layerloop::read_case(options.case_file, overrides);
+  return layerloop::read_case(options.case_file, overrides, process);
 }
 
 }  // namespace layerloop::apps

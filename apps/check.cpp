@@ -9,24 +9,20 @@
 #include "coupling/solid_on_plate.hpp"
 
 namespace layerloop::apps {
-namespace {
-
-void check(CaseOptions const& from) {
-  Case const checked = read_case(from);
+void print_cost(Case const& checked, std::filesystem::path const& case_file) {
   coupling::solid_on_plate(checked);  // refuses a damaged substrate
   if (!Communicator{}.is_root()) return;
   coupling::Cost const cost = coupling::estimate_cost(checked);
   fmt::print(
-      "{} is a good case\n"
+      "{} is a good case for {}\n"
       "  particles   {}\n"
       "  time_steps  {} (sweeps; settling adds about half as many)\n"
       "  rays        {}\n"
       "  cells       {}\n"
       "  memory      {:.0f} MB\n",
-      from.case_file.string(), cost.particles, cost.time_steps, cost.rays, cost.cells, cost.memory * 1e-6);
+      case_file.string(), checked.has_laser() ? "melting" : "spreading", cost.particles, cost.time_steps, cost.rays,
+      cost.cells, cost.memory * 1e-6);
 }
-
-}  // namespace
 
 void add_check(CLI::App& program, Action& chosen) {
   CLI::App* verb = program.add_subcommand("check", "is the case good, and what will it cost?");
@@ -43,7 +39,7 @@ void add_check(CLI::App& program, Action& chosen) {
       return;
     }
     if (from->case_file.empty()) throw CLI::RequiredError("case");
-    chosen = [=] { check(*from); };
+    chosen = [=] { print_cost(read_case(*from, std::nullopt), from->case_file); };
   });
 }
 

@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", LAYERLOOP_VERSION);
   apps::Action action;
   apps::add_run(program, action);
+  apps::add_spread(program, action);
   apps::add_check(program, action);
   apps::add_doctor(program, action);
   try {

@@ -22,10 +22,19 @@ struct CaseOptions {
 /// A verb registers its subcommand and, when the user chose it, leaves what is to be done in `chosen`.
 using Action = std::function<void()>;
 void add_run(CLI::App& program, Action& chosen);
+void add_spread(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);
 void add_doctor(CLI::App& program, Action& chosen);
 
 void add_case_options(CLI::App& verb, CaseOptions& options);
-Case read_case(CaseOptions const& options);  ///< also sets the number of threads
+/// Also sets the number of threads. Without a process, the case tells by itself (core/case_file.hpp).
+Case read_case(CaseOptions const& options, std::optional<Process> process);
+
+/// "FILE is a good case" and what it will cost.
+void print_cost(Case const& checked, std::filesystem::path const& case_file);
+
+/// A verb that goes through the layer loop.
+CLI::App* add_layer_verb(CLI::App& program, Action& chosen, std::string const& name, std::string const& description,
+                         Process process);
 
 }  // namespace layerloop::apps

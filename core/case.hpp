@@ -23,6 +23,8 @@ enum class CoulombOn { repulsive, total };
 enum class BladeCollision { stop, report };
 enum class SpotDefinition { one_over_e2, d4sigma, fwhm };
 enum class ScanKind { track, hatch };
+/// What becomes of a spread layer; the verb decides.
+enum class Process { melting, spreading };
 enum class HeatSolver { explicit_steps, implicit_steps, automatic };
 
 struct PowderSettings {
@@ -31,6 +33,7 @@ struct PowderSettings {
   std::vector<double> diameters;  ///< [m]
   std::vector<double> fractions;  ///< sum 1, by `basis`
   std::int64_t particles = 0;     ///< grains fed before the first layer
+  std::string bed = "";           ///< file of grains that are in the machine before the first layer; empty: none
 };
 
 struct ContactSettings {
@@ -111,6 +114,8 @@ struct HeatSettings {
 
 struct RunSettings {
   std::int64_t layers = 0;
+  std::int64_t bins = 15;       ///< slices of the deposition zone along x in which a layer is measured
+  std::int64_t replicates = 1;  ///< runs with seeds seed, seed + 1, ...
   bool checkpoint = true;
   bool pictures = true;
   bool unsafe_time_step = false;
@@ -124,6 +129,7 @@ struct EffectSettings {
 
 struct Case {
   std::string name;
+  Process process = Process::melting;
   std::uint64_t seed = 0;
   std::string preset;
   PowderSettings powder;
@@ -137,6 +143,8 @@ struct Case {
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
   Material material;  ///< the powder's, overrides applied; substrate and part are the same metal
 
+  bool has_laser() const { return process == Process::melting && !machine.frozen_zone; }
+  bool has_part() const { return process == Process::melting || machine.frozen_zone; }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
 };
 

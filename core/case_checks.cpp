@@ -37,7 +37,7 @@ class CaseChecks {
     frozen_zone();
     material();
     cells();
-    if (c_.machine.frozen_zone) return;
+    if (!c_.has_laser()) return;
     scan();
     beam();
     optics();
@@ -62,7 +62,7 @@ class CaseChecks {
 
   void powder() const {
     PowderSettings const& powder = c_.powder;
-    if (known({"powder.particles"}) && powder.particles == 0)
+    if (known({"powder.particles", "powder.bed"}) && powder.particles == 0 && powder.bed.empty())
       report("powder.particles", "= 0 (empty powder) feed grains");
     if (!known({"powder.diameters", "powder.fractions"})) return;
     if (powder.diameters.empty()) {
@@ -79,6 +79,7 @@ class CaseChecks {
   /// The feed must stand above the platforms, or the blade passes over it, and must stay on its zone.
   void feed() const {
     MachineSettings const& m = c_.machine;
+    if (!c_.powder.bed.empty()) return;  // it may stand in the feed
     if (!distribution_known() || !known({"powder.basis", "powder.particles", "machine.accumulation_length",
                                          "machine.accumulation_depth", "machine.width"})) {
       return;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <set>
 
 #include "core/case_checks.hpp"
@@ -49,7 +51,8 @@ class CaseReader {
     for (TomlEntry& entry : overrides) take(std::move(entry));
   }
 
-  Case read() {
+  Case read(std::optional<Process> process) {
+    case_.process = process.value_or(tables_.contains("laser") ? Process::melting : Process::spreading);
     report_unknown();
     for (CaseKey const& row : case_schema()) {
       if (row.table != "material") fill(row, row.table, case_);
@@ -239,6 +242,21 @@ class CaseReader {
   std::set<std::string> meant_keys_, meant_tables_;  // misspelt, so not missing as well
 };
 
+/// Largest edge up to 5 um that divides the deposition zone along x and y, both in whole nanometres.
+double common_cell(MachineSettings const& machine, std::filesystem::path const& path) {
+  constexpr double nanometre = 1e-9;
+  constexpr std::int64_t largest = 5000, smallest = 1000;
+  std::int64_t const common =
+      std::gcd(std::llround(machine.width / nanometre), std::llround(machine.deposition_length / nanometre));
+  for (std::int64_t cell = largest; cell >= smallest; --cell) {
+    if (common % cell == 0) return static_cast<double>(cell) * nanometre;
+  }
+  throw InputError(
+      fmt::format("{}:1:1: missing key \"cell_size\" in [heat] (no edge from 1 to 5 um divides machine.width and "
+                  "machine.deposition_length) round these lengths, or give it",
+                  path.string()));
+}
+
 [[noreturn]] void throw_faults(std::vector<Fault> faults, std::string const& file) {
   auto const order = [](Fault const& fault) {
     return std::tuple(!fault.place.option.empty(), fault.place.line, fault.place.column);
@@ -256,7 +274,8 @@ class CaseReader {
 
 }  // namespace
 
-Case read_case(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
+Case read_case(std::filesystem::path const& path, std::vector<std::string> const& overrides,
+               std::optional<Process> process) {
   if (!std::filesystem::is_regular_file(path)) {
     throw FileError(fmt::format("cannot read the case {} (not a file)", path.string()));
   }
@@ -277,11 +296,12 @@ Case read_case(std::filesystem::path const& path, std::vector<std::string> const
   }
   if (!syntax.empty()) throw_faults(syntax, path.string());
   CaseReader reader(std::move(content), std::move(set));
-  Case result = reader.read();
+  Case result = reader.read(process);
   if (!reader.faults().empty()) throw_faults(reader.faults(), path.string());
-  std::string& substrate = result.machine.substrate;  // a path in a case is seen from the case
-  if (!substrate.empty())
-    substrate = (std::filesystem::absolute(path).parent_path() / substrate).lexically_normal().string();
+  if (result.heat.cell_size == 0) result.heat.cell_size = common_cell(result.machine, path);
+  for (std::string* file : {&result.machine.substrate, &result.powder.bed}) {  // seen from the case
+    if (!file->empty()) *file = (std::filesystem::absolute(path).parent_path() / *file).lexically_normal().string();
+  }
   return result;
 }
 

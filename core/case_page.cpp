@@ -31,7 +31,9 @@ std::string default_column(CaseKey const& row) {
     case Need::always:
       return row.table == "material" ? "built-in" : "required";
     case Need::with_laser:
-      return row.table == "material" ? "built-in" : "required (not with `frozen_zone`)";
+      return row.table == "material" ? "built-in" : "required (not with `frozen_zone` or for `spread`)";
+    case Need::with_part:
+      return "required (not for `spread`)";
     case Need::with_energy_density:
       return "required with `sjkr`, `sjkr2`";
     case Need::with_surface_energy:

@@ -60,6 +60,10 @@ std::vector<CaseKey> powder_rows() {
        "Share of each diameter, by `basis`; they sum to 1."},
       {"powder", "particles", at<powder, &P::particles>, D::none, {0, 1e9}, Need::always, "",
        "Grains fed into the accumulation zone before the first layer."},
+      {"powder", "bed", at<powder, &P::bed>, D::none, {}, Need::never, "\"\"",
+       "File of grains (csv, LIGGGHTS or LAMMPS dump, extxyz, h5; coordinates of the machine) that are there before the "
+       "first layer: those in the accumulation zone join the feed, those in the deposition zone lie on the plate, whose top "
+       "is at z = 0 then."},
 
       {"contact", "youngs_modulus", at<contact, &C::youngs_modulus>, D::pressure, {1e6, 1e12}, Need::always, "",
        "Young's modulus of a grain; softened values (0.2 GPa) allow longer time steps."},
@@ -190,8 +194,9 @@ std::vector<CaseKey> heat_and_run_rows() {
   constexpr auto heat = &Case::heat;
   constexpr auto run = &Case::run;
   return {
-      {"heat", "cell_size", at<heat, &H::cell_size>, D::length, {2e-7, 1e-4}, Need::always, "",
-       "Edge of the cubic cells of heat grid and part; divides width and deposition length."},
+      {"heat", "cell_size", at<heat, &H::cell_size>, D::length, {2e-7, 1e-4}, Need::with_part, "",
+       "Edge of the cubic cells of heat grid and part, and of the pixels of height maps; divides width and deposition "
+       "length. Where powder is only spread: by default the largest such edge up to 5 um."},
       {"heat", "substrate_depth", at<heat, &H::substrate_depth>, D::length, {5e-6, 0.01}, Need::never, "\"120 um\"",
        "Depth of the plate that the grid holds, rounded up to whole cells."},
       {"heat", "margin", at<heat, &H::margin>, D::length, {0, 0.01}, Need::never, "\"50 um\"",
@@ -209,6 +214,10 @@ std::vector<CaseKey> heat_and_run_rows() {
        "Isotherm that bounds the melt pool and tells what has melted."},
 
       {"run", "layers", at<run, &R::layers>, D::none, {1, 100000}, Need::never, "1", "Layers to build."},
+      {"run", "bins", at<run, &R::bins>, D::none, {1, 1000}, Need::never, "15",
+       "Equal slices of the deposition zone along x in which every layer is measured."},
+      {"run", "replicates", at<run, &R::replicates>, D::none, {1, 1000}, Need::never, "1",
+       "Runs with the seeds seed, seed + 1, ...; the summary then gives means with 95 % intervals (3 or more advised)."},
       {"run", "checkpoint", at<run, &R::checkpoint>, D::none, {}, Need::never, "true",
        "Whether a checkpoint is written after each layer."},
       {"run", "pictures", at<run, &R::pictures>, D::none, {}, Need::never, "true",
@@ -299,7 +308,9 @@ bool is_needed(CaseKey const& row, Case const& c) {
     case Need::always:
       return true;
     case Need::with_laser:
-      return !c.machine.frozen_zone;
+      return c.has_laser();
+    case Need::with_part:
+      return c.has_part();
     case Need::with_energy_density:
       return c.contact.cohesion == Cohesion::sjkr || c.contact.cohesion == Cohesion::sjkr2;
     case Need::with_surface_energy:

@@ -25,7 +25,8 @@ struct Range {
 /// Who has to give a key that has no default.
 enum class Need {
   always,
-  with_laser,     ///< unless machine.frozen_zone takes the laser's place
+  with_laser,           ///< unless machine.frozen_zone takes the laser's place or powder is only spread
+  with_part,            ///< unless powder is only spread
   with_energy_density,  ///< with contact.cohesion "sjkr" or "sjkr2"
   with_surface_energy,  ///< with contact.cohesion "jkr" or "dmt"
   never

@@ -22,7 +22,7 @@ Cost estimate_cost(Case const& checked) {
   cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose_count(checked);
   double const sweep = dem::blade_stroke(machine) / machine.recoating_speed;
   cost.time_steps = checked.run.layers * std::llround(sweep / dem::motion_of(checked).time_step);
-  if (machine.frozen_zone) return cost;
+  if (!checked.has_laser()) return cost;
 
   auto const tracks = static_cast<std::int64_t>(scan_path(checked, 1).size());
   cost.rays = checked.run.layers * tracks * std::llround(scan.track_length / checked.optics.position_spacing) *

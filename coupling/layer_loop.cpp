@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "core/case_file.hpp"
 #include "core/error.hpp"
@@ -12,6 +13,7 @@
 #include "coupling/consolidation.hpp"
 #include "coupling/cost.hpp"
 #include "coupling/exposure.hpp"
+#include "coupling/first_bed.hpp"
 #include "coupling/freeze_zone.hpp"
 #include "coupling/layer_output.hpp"
 #include "coupling/ledger.hpp"
@@ -23,8 +25,10 @@
 #include "coupling/surface_level.hpp"
 #include "coupling/transfer.hpp"
 #include "dem/dosing.hpp"
+#include "dem/heap_angle.hpp"
 #include "dem/layer_metrics.hpp"
 #include "dem/recoater.hpp"
+#include "dem/reservoir.hpp"
 #include "thermal/expose.hpp"
 
 namespace layerloop::coupling {
@@ -59,13 +63,33 @@ void dose(Run const& run, BuildState& build) {
   ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
 }
 
+/// What the stroke did to feed and heap. \param feed  before it
+StrokeMetrics stroke_metrics(dem::Reservoir const& feed, dem::Reservoir const& left, dem::HeapWatch const& heap,
+                             double blade_force) {
+  return {.settled_height = feed.height,
+          .settled_density = feed.density,
+          .reservoir_mean_diameter_before = feed.mean_diameter,
+          .reservoir_mean_diameter = left.mean_diameter,
+          .reservoir_mass_ratio = left.volume / feed.volume,
+          .heap_angle_accumulation = heap.accumulation().mean,
+          .heap_angle_accumulation_u_num = heap.accumulation().standard_error,
+          .heap_angle_deposition = heap.deposition().mean,
+          .heap_angle_deposition_u_num = heap.deposition().standard_error,
+          .blade_force = blade_force};
+}
+
 /// The blade sweeps; what it leaves is measured.
 void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   Stopwatch const timed(build.record.wall_time.dem);
   HeightMap const base = top_of_solid(build.solid, run.checked);
   dem::LayerBase const before = dem::layer_base(build.bed, base, run.checked);
-  dem::SpreadOutcome const sweep = dem::spread(build.bed, run.checked, build.substrate, run.comm, run.show_progress());
+  MachineSettings const& machine = run.checked.machine;
+  dem::Reservoir const feed = dem::measure_reservoir(build.bed, machine);
+  dem::HeapWatch heap(machine, feed.surface);
+  dem::SpreadOutcome const sweep =
+      dem::spread(build.bed, run.checked, build.substrate, run.comm, run.show_progress(), std::ref(heap));
   layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
+  layer.stroke = stroke_metrics(feed, dem::measure_reservoir(build.bed, machine), heap, sweep.blade_force);
   for (LayerBin const& bin : layer.metrics.bins) layer.grains_in_layer += bin.grains;
   layer.blade_note = sweep.blade_note;
   layer.grains_nipped = sweep.nipped_grains;
@@ -112,7 +136,14 @@ MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellCon
   return heat.melt;
 }
 
-/// Melted grains become part of the solid, and the solid's new surface is meshed.
+/// Pictures of bed and solid as they are now.
+void show(Run const& run, BuildState& build, std::initializer_list<View> views, LayerRecord& layer) {
+  if (!run.output.draws_pictures()) return;
+  raytrace::BedScene const scene(build.bed, build.substrate, {0.0, run.checked.machine.width});
+  picture(run, build, scene, views, layer);
+}
+
+/// Melted or frozen grains become part of the solid, and the solid's new surface is meshed.
 void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
   Case const& checked = run.checked;
   if (checked.machine.frozen_zone) {
@@ -126,10 +157,7 @@ void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
     layer.consolidation = consolidate(build.solid, build.bed, build.substrate, melt, cells, checked);
   }
   layer.part_surface = top_of_solid(build.solid, checked);
-  if (run.output.draws_pictures()) {
-    raytrace::BedScene const scene(build.bed, build.substrate, {0.0, checked.machine.width});
-    picture(run, build, scene, {View::part}, layer);
-  }
+  show(run, build, {View::part}, layer);
 
   Ledger& ledger = build.record.ledger;
   ledger.particles_melted += layer.consolidation.grains_melted;
@@ -145,7 +173,8 @@ void build_layer(Run const& run, BuildState& build) {
   lower(run, build);
   dose(run, build);
   spread(run, build, layer);
-  consolidate(run, build, layer);
+  if (!run.checked.has_laser()) show(run, build, {View::whole_machine, View::oblique, View::from_above}, layer);
+  if (run.checked.has_part()) consolidate(run, build, layer);
   build.record.layers.push_back(layer);
   audit(build, run.checked);
 }
@@ -160,6 +189,10 @@ BuildState first_state(Case const& checked, RunOptions const& options, Communica
   BuildState build;
   build.solid = solid_on_plate(checked);
   build.substrate = mesh_solid(build.solid, checked);
+  build.bed = first_bed(checked);
+  if (build.bed.size() > 0) build.next_id = build.bed.id.back() + 1;
+  build.record.ledger.particles_fed = static_cast<std::int64_t>(build.bed.size());
+  build.record.ledger.mass_fed = checked.material.density * total_volume(build.bed);
   return build;
 }
 
@@ -167,7 +200,7 @@ BuildState first_state(Case const& checked, RunOptions const& options, Communica
 
 RunRecord run_layer_loop(Case const& checked, RunOptions const& options, Communicator const& comm) {
   BuildState build = first_state(checked, options, comm);  // refuses bad input before anything is written
-  Run const run{checked, options, comm, LayerOutput(checked, options.folder, comm)};
+  Run const run{checked, options, comm, LayerOutput(checked, options.folder, options.exports, comm)};
   while (build.layers_done < checked.run.layers) {
     {
       Stopwatch const timed(build.record.wall_time.total);

@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
+#include <vector>
 
+#include "core/bed_file.hpp"
 #include "core/case.hpp"
 #include "core/communicator.hpp"
 #include "coupling/run_record.hpp"
@@ -8,12 +10,14 @@
 namespace layerloop::coupling {
 
 struct RunOptions {
-  std::filesystem::path folder;  ///< results go here; made when missing
-  bool resume = false;           ///< go on from the newest good checkpoint in the folder
-  bool quiet = false;            ///< no progress
+  std::filesystem::path folder;    ///< results go here; made when missing
+  bool resume = false;             ///< go on from the newest good checkpoint in the folder
+  bool quiet = false;              ///< no progress
+  std::vector<BedFormat> exports;  ///< in which every bed is written besides bed_NNNN.h5
 };
 
-/// The layer loop: dose, spread, measure, trace, heat, consolidate, mesh, lower, `run.layers` times. Leaves in the
+/// The layer loop: dose, spread, measure, trace, heat, consolidate, mesh, lower, `run.layers` times; without a laser
+/// the zone to be frozen takes the place of the stages after the measuring, or the powder stays as it is. Leaves in the
 /// folder bed_NNNN.h5, heat_NNNN.h5, solid_NNNN.stl, pictures and a checkpoint per layer, and at the end summary.json,
 /// CSV tables and report.html. \note Collective \throws PhysicsError a guard or a ledger stopped the run;
 /// StoppedBySignal after a checkpoint; FileError

@@ -31,8 +31,8 @@ std::vector<double> as_doubles(auto const& values) { return {values.begin(), val
 
 }  // namespace
 
-LayerOutput::LayerOutput(Case const& checked, fs::path folder, Communicator const& comm)
-    : checked_(checked), folder_(std::move(folder)), writes_(comm.is_root()) {
+LayerOutput::LayerOutput(Case const& checked, fs::path folder, std::vector<BedFormat> exports, Communicator const& comm)
+    : checked_(checked), folder_(std::move(folder)), exports_(std::move(exports)), writes_(comm.is_root()) {
   if (!writes_) return;
   std::error_code failure;
   fs::create_directories(folder_, failure);
@@ -58,7 +58,9 @@ void LayerOutput::picture(raytrace::BedScene const& scene, PowderBed const& bed,
       case View::whole_machine:
         return {"machine", "Reservoir and layer after the sweep; coloured by grain size"};
       case View::oblique:
-        return {"layer", "The layer as the laser sees it: the scene that was traced, coloured by grain size"};
+        return {"layer", checked_.has_laser()
+                             ? "The layer as the laser sees it: the scene that was traced, coloured by grain size"
+                             : "The layer, coloured by grain size"};
       case View::from_above:
         return {"layer_top", "The same scene from above"};
       case View::part:
@@ -86,6 +88,11 @@ void LayerOutput::layer(BuildState& build) const {
   Stopwatch const timed(build.record.wall_time.io);
   LayerRecord const& layer = build.record.layers.back();
   write_bed_file(folder_ / fmt::format("bed_{:04}.h5", layer.layer), build.bed, build.substrate, {});
+  for (BedFormat const format : exports_) {
+    double const plate = -checked_.machine.layer_thickness * layer.layer;
+    BedFile const file{build.bed, std::nullopt, checked_.machine.width, plate, checked_.material.density};
+    write_bed(folder_ / fmt::format("bed_{:04}.{}", layer.layer, extension(format)), file, format);
+  }
   write_stl(build.substrate, folder_ / fmt::format("solid_{:04}.stl", layer.layer));
   nlohmann::json const line{{"event", "layer_done"},
                             {"layer", layer.layer},

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/bed_file.hpp"
 #include "core/case.hpp"
 #include "core/cell_content.hpp"
 #include "core/communicator.hpp"
@@ -18,7 +19,8 @@ enum class View { whole_machine, oblique, from_above, part };
 class LayerOutput {
  public:
   /// Makes the folder, writes case_resolved.toml. \throws FileError
-  LayerOutput(Case const& checked, std::filesystem::path folder, Communicator const& comm);
+  LayerOutput(Case const& checked, std::filesystem::path folder, std::vector<BedFormat> exports,
+              Communicator const& comm);
 
   /// Whether picture() does anything on this rank.
   bool draws_pictures() const { return writes_ && checked_.run.pictures; }
@@ -29,7 +31,7 @@ class LayerOutput {
   /// heat_NNNN.h5
   void grid(CellContent const& cells, MeltRecord const& melt, LayerRecord const& layer) const;
 
-  /// bed_NNNN.h5, solid_NNNN.stl, the checkpoint and a line of log.jsonl, once the layer is complete.
+  /// bed_NNNN.h5 and its exports, solid_NNNN.stl, the checkpoint and a line of log.jsonl, once the layer is complete.
   void layer(BuildState& build) const;
 
   /// summary.json, the CSV tables and report.html.
@@ -38,6 +40,7 @@ class LayerOutput {
  private:
   Case const& checked_;
   std::filesystem::path folder_;
+  std::vector<BedFormat> exports_;
   bool writes_;
 };
 

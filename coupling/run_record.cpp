@@ -37,26 +37,55 @@ void members(Of<AreaMap> auto& map, Visit&& visit) {
 }
 
 template <class Visit>
+void zone_members(auto& zone, Visit&& visit) {
+  visit("effective_thickness", zone.effective_thickness);
+  visit("real_effective_thickness", zone.real_effective_thickness);
+  visit("void_layer", zone.void_layer);
+  visit("volume_fraction_nominal", zone.volume_fraction_nominal);
+  visit("volume_fraction_real", zone.volume_fraction_real);
+  visit("surface_coverage", zone.surface_coverage);
+  visit("roughness_sa", zone.roughness_sa);
+  visit("roughness_sq", zone.roughness_sq);
+  visit("roughness_sz", zone.roughness_sz);
+  visit("d10", zone.d10);
+  visit("d50", zone.d50);
+  visit("d90", zone.d90);
+  visit("d10_number", zone.d10_number);
+  visit("d50_number", zone.d50_number);
+  visit("d90_number", zone.d90_number);
+  visit("mean_diameter", zone.mean_diameter);
+  visit("sauter_diameter", zone.sauter_diameter);
+  visit("mass_diameter", zone.mass_diameter);
+  visit("coordination_number", zone.coordination_number);
+  visit("rattler_fraction", zone.rattler_fraction);
+  visit("grains", zone.grains);
+}
+
+template <class Visit>
 void members(Of<LayerBin> auto& bin, Visit&& visit) {
   visit("x", bin.x);
-  visit("relative_density", bin.relative_density);
-  visit("effective_thickness", bin.effective_thickness);
-  visit("mean_diameter", bin.mean_diameter);
-  visit("grains", bin.grains);
+  zone_members(bin, visit);
+}
+
+template <class Visit>
+void members(Of<StrokeMetrics> auto& stroke, Visit&& visit) {
+  visit("settled_height", stroke.settled_height);
+  visit("settled_density", stroke.settled_density);
+  visit("reservoir_mean_diameter_before", stroke.reservoir_mean_diameter_before);
+  visit("reservoir_mean_diameter", stroke.reservoir_mean_diameter);
+  visit("reservoir_mass_ratio", stroke.reservoir_mass_ratio);
+  visit("heap_angle_accumulation", stroke.heap_angle_accumulation);
+  visit("heap_angle_accumulation_u_num", stroke.heap_angle_accumulation_u_num);
+  visit("heap_angle_deposition", stroke.heap_angle_deposition);
+  visit("heap_angle_deposition_u_num", stroke.heap_angle_deposition_u_num);
+  visit("blade_force", stroke.blade_force);
 }
 
 template <class Visit>
 void members(Of<LayerMetrics> auto& metrics, Visit&& visit) {
-  visit("effective_thickness", metrics.effective_thickness);
-  visit("real_effective_thickness", metrics.real_effective_thickness);
-  visit("void_layer", metrics.void_layer);
-  visit("volume_fraction_nominal", metrics.volume_fraction_nominal);
-  visit("volume_fraction_real", metrics.volume_fraction_real);
-  visit("surface_coverage", metrics.surface_coverage);
-  visit("roughness_sa", metrics.roughness_sa);
-  visit("d10", metrics.d10);
-  visit("d50", metrics.d50);
-  visit("d90", metrics.d90);
+  zone_members(metrics, visit);
+  visit("segregation_index", metrics.segregation_index);
+  visit("lacey_index", metrics.lacey_index);
   visit("bins", metrics.bins);
   visit("surface", metrics.surface);
 }
@@ -94,6 +123,7 @@ void members(Of<LayerRecord> auto& layer, Visit&& visit) {
   visit("grains_in_layer", layer.grains_in_layer);
   visit("grains_nipped", layer.grains_nipped);
   visit("metrics", layer.metrics);
+  visit("stroke", layer.stroke);
   visit("blade_note", layer.blade_note);
   visit("absorptivity", layer.absorptivity);
   visit("absorptivity_standard_error", layer.absorptivity_standard_error);
@@ -220,21 +250,40 @@ void add_laser_keys(json& entry, LayerRecord const& layer) {
   entry["melted_mass_u_num"] = std::abs(layer.consolidation.melted_mass - layer.consolidation.melted_cell_mass);
 }
 
-json layer_summary(LayerRecord const& layer, bool laser) {
+/// The bins of a layer; what is the volume fraction of a layer is called relative density there.
+json bins_summary(LayerRecord const& layer) {
+  json bins = encode(layer.metrics.bins);
+  for (json& bin : bins) {
+    bin["relative_density"] = bin["volume_fraction_real"];
+    bin.erase("volume_fraction_real");
+  }
+  return bins;
+}
+
+json layer_summary(LayerRecord const& layer, Case const& checked) {
   json entry = encode(layer.metrics);
-  entry.erase("bins");
   entry.erase("surface");
+  entry["bins"] = bins_summary(layer);
+  entry.update(encode(layer.stroke));
   entry["layer"] = layer.layer;
   entry["grains_in_layer"] = layer.grains_in_layer;
   entry["grains_nipped"] = layer.grains_nipped;
   if (!layer.blade_note.empty()) entry["blade_note"] = layer.blade_note;
-  if (laser) add_laser_keys(entry, layer);
+  if (checked.has_laser()) add_laser_keys(entry, layer);
+  if (!checked.has_part()) return entry;
   Consolidation const& part = layer.consolidation;
   entry["part_relative_density"] = part.part_relative_density;
   entry["grains_melted"] = part.grains_melted;
   entry["grains_trapped"] = part.grains_trapped;
   entry["grains_moved"] = part.grains_moved;
   return entry;
+}
+
+/// A number that is not finite has a word in the record, and is nothing in a summary.
+void blank_what_is_not_finite(json& value) {
+  if (value == "nan" || value == "inf" || value == "-inf") value = nullptr;
+  if (value.is_structured())
+    for (json& member : value) blank_what_is_not_finite(member);
 }
 
 }  // namespace
@@ -285,11 +334,20 @@ std::map<std::string, std::string> definitions(ReportExtras const& extras) {
 }
 
 json summary(Case const& checked, RunRecord const& record, ReportExtras const& extras) {
-  bool const laser = !checked.machine.frozen_zone;
-  json all{{"verb", "run"}, {"case", checked.name}, {"seed", checked.seed}, {"version", extras.version}};
+  bool const spreading = checked.process == Process::spreading;
+  json all = json::object();
   all["layers"] = json::array();
-  for (LayerRecord const& layer : record.layers) all["layers"].push_back(layer_summary(layer, laser));
+  for (LayerRecord const& layer : record.layers) all["layers"].push_back(layer_summary(layer, checked));
+  if (spreading) {
+    all.update(encode(record.layers.back().stroke));
+    all["bins"] = bins_summary(record.layers.back());
+  }
   all["ledger"] = encode(record.ledger);
+  blank_what_is_not_finite(all);
+  all["verb"] = spreading ? "spread" : "run";
+  all["case"] = checked.name;
+  all["seed"] = checked.seed;
+  all["version"] = extras.version;
   all["wall_time"] = encode(record.wall_time);
   all["definitions"] = definitions(extras);
   return all;

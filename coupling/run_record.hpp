@@ -52,6 +52,7 @@ struct LayerRecord {
   std::int64_t grains_in_layer = 0;
   std::int64_t grains_nipped = 0;  ///< of the overflow: caught between the moving blade and an edge, and taken out
   LayerMetrics metrics;
+  StrokeMetrics stroke;
   std::string blade_note;  ///< empty, or what the blade would have touched
   double absorptivity = 0, absorptivity_standard_error = 0, mean_bounces = 0;
   std::int64_t rays = 0;
@@ -87,8 +88,9 @@ void from_json(nlohmann::json const& json, RunRecord& record);
 /// A sentence for every quantity of the summary: those of `extras`, and those of light, heat and part.
 std::map<std::string, std::string> definitions(ReportExtras const& extras);
 
-/// summary.json as the contract names it: scalars with `_u_num`, definitions, ledger, wall time; no maps. Quantities of
-/// light, heat and part are left out where a zone was frozen instead of melted.
+/// summary.json as the contract names it: scalars with `_u_num`, definitions, ledger, wall time; no maps; null where
+/// there was nothing to measure. Quantities of light, heat and part are left out where nothing was melted or frozen.
+/// Where powder was only spread, bins and stroke of the last layer stand at the top as well.
 nlohmann::json summary(Case const& checked, RunRecord const& record, ReportExtras const& extras);
 
 }  // namespace layerloop::coupling

@@ -2,16 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "dem/coordination.hpp"
+#include "dem/disc_union.hpp"
+#include "dem/grain_sizes.hpp"
 
 namespace layerloop::dem {
 namespace {
-constexpr std::size_t bins = 15;
 constexpr double no_thickness = 1e-9;  // [m]: a layer thinner than this has no volume fraction
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Part of the deposition zone along x.
 struct Span {
   double from, to;
   bool holds(double x) const { return x >= from && x < to; }
+  double centre() const { return 0.5 * (from + to); }
 };
 
 Span interior(Case const& checked) {
@@ -20,10 +26,17 @@ Span interior(Case const& checked) {
   return {m.deposition_begin() + margin, m.deposition_end() - margin};
 }
 
-Span bin_span(MachineSettings const& m, std::size_t bin) {
-  double const width = m.deposition_length / bins;
-  double const begin = m.deposition_begin() + static_cast<double>(bin) * width;
-  return {begin, bin + 1 == bins ? m.deposition_end() : begin + width};
+/// The interior, then every bin.
+std::vector<Span> zones(Case const& checked) {
+  MachineSettings const& m = checked.machine;
+  std::vector<Span> all{interior(checked)};
+  auto const edge = [&](std::int64_t bin) {
+    return bin == checked.run.bins ? m.deposition_end()
+                                   : m.deposition_begin() + static_cast<double>(bin) * m.deposition_length /
+                                                                static_cast<double>(checked.run.bins);
+  };
+  for (std::int64_t bin = 0; bin < checked.run.bins; ++bin) all.push_back({edge(bin), edge(bin + 1)});
+  return all;
 }
 
 double volume_in(PowderBed const& bed, Span span) {
@@ -32,59 +45,126 @@ double volume_in(PowderBed const& bed, Span span) {
   return volume;
 }
 
-/// Mean of value(pixel) over the pixels with their centre in the span.
-template <class Value>
-double mean_over(AreaMap const& map, Span span, Value const& value) {
-  double sum = 0;
-  std::int64_t count = 0;
+/// Heights of the pixels with their centre in the span.
+std::vector<double> heights_in(HeightMap const& map, Span span) {
+  std::vector<double> heights;
   for (std::int32_t i = 0; i < map.nx; ++i) {
     if (!span.holds(map.x0 + (i + 0.5) * map.spacing)) continue;
-    for (std::int32_t j = 0; j < map.ny; ++j) sum += value(i, j);
-    count += map.ny;
+    for (std::int32_t j = 0; j < map.ny; ++j) heights.push_back(map.at(i, j));
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+  return heights;
 }
 
-double mean_height(AreaMap const& map, Span span) {
-  return mean_over(map, span, [&](std::int32_t i, std::int32_t j) { return map.at(i, j); });
+double mean(std::vector<double> const& values) {
+  double sum = 0;
+  for (double const value : values) sum += value;
+  return values.empty() ? nothing : sum / static_cast<double>(values.size());
 }
 
-double area(MachineSettings const& machine, Span span) { return (span.to - span.from) * machine.width; }
+/// A spread layer, and what was there before.
+struct SpreadLayer {
+  PowderBed const& bed;
+  HeightMap const &before, &after;
+  Case const& checked;
+  std::vector<std::size_t> added;      ///< rows of the grains in the deposition zone that were not there before
+  std::vector<std::int32_t> contacts;  ///< of every grain
+  std::vector<RimArc> rim;             ///< of the added grains seen from above
+};
 
-/// Rows of the grains in the span that were not in the zone before.
-std::vector<std::size_t> new_grains(PowderBed const& bed, Span span, std::vector<std::int64_t> const& before) {
+std::vector<std::size_t> added_in(SpreadLayer const& layer, Span span) {
   std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < bed.size(); ++i) {
-    if (span.holds(bed.x[i]) && !std::ranges::binary_search(before, bed.id[i])) rows.push_back(i);
-  }
+  for (std::size_t const i : layer.added)
+    if (span.holds(layer.bed.x[i])) rows.push_back(i);
   return rows;
 }
 
-/// Smallest diameter such that grains up to it hold at least this share of the volume; 0 without grains.
-double volume_quantile(PowderBed const& bed, std::vector<std::size_t> rows, double share) {
-  std::ranges::sort(rows, {}, [&](std::size_t i) { return bed.radius[i]; });
-  double total = 0, below = 0;
-  for (std::size_t const i : rows) total += bed.volume(i);
-  for (std::size_t const i : rows) {
-    below += bed.volume(i);
-    if (below >= share * total) return 2 * bed.radius[i];
-  }
-  return rows.empty() ? 0.0 : 2 * bed.radius[rows.back()];
+std::vector<double> radii_of(PowderBed const& bed, std::vector<std::size_t> const& rows) {
+  std::vector<double> radii;
+  for (std::size_t const i : rows) radii.push_back(bed.radius[i]);
+  return radii;
 }
 
-LayerBin measure_bin(PowderBed const& bed, LayerBase const& before, HeightMap const& surface, Case const& checked,
-                     std::size_t bin) {
-  Span const span = bin_span(checked.machine, bin);
-  double const height = mean_height(surface, span), thickness = height - mean_height(before.surface, span);
-  double const added = volume_in(bed, span) - before.volume_by_bin[bin];
-  std::vector<std::size_t> const rows = new_grains(bed, span, before.grains);
-  double diameters = 0;
-  for (std::size_t const i : rows) diameters += 2 * bed.radius[i];
-  return {.x = 0.5 * (span.from + span.to),
-          .relative_density = thickness > no_thickness ? added / (area(checked.machine, span) * thickness) : 0.0,
-          .effective_thickness = height + checked.machine.layer_thickness - checked.machine.blade_clearance,
-          .mean_diameter = rows.empty() ? 0.0 : diameters / static_cast<double>(rows.size()),
-          .grains = static_cast<std::int64_t>(rows.size())};
+void measure_surface(ZoneMetrics& zone, SpreadLayer const& layer, Span span, double added_volume) {
+  MachineSettings const& m = layer.checked.machine;
+  std::vector<double> const heights = heights_in(layer.after, span);
+  double const height = mean(heights), height_before = mean(heights_in(layer.before, span));
+  double const area = (span.to - span.from) * m.width;
+  zone.effective_thickness = height + m.layer_thickness - m.blade_clearance;
+  zone.real_effective_thickness = height - height_before;
+  zone.void_layer = m.blade_clearance - height_before;
+  zone.volume_fraction_nominal = added_volume / (area * m.layer_thickness);
+  zone.volume_fraction_real =
+      zone.real_effective_thickness > no_thickness ? added_volume / (area * zone.real_effective_thickness) : nothing;
+  zone.surface_coverage = area_between(layer.rim, span.from, span.to) / area;
+  double absolute = 0, square = 0;
+  for (double const z : heights) {
+    absolute += std::abs(z - height);
+    square += (z - height) * (z - height);
+  }
+  double const count = static_cast<double>(heights.size());
+  zone.roughness_sa = absolute / count;
+  zone.roughness_sq = std::sqrt(square / count);
+  zone.roughness_sz = heights.empty() ? nothing : std::ranges::max(heights) - std::ranges::min(heights);
+}
+
+void measure_grains(ZoneMetrics& zone, SpreadLayer const& layer, Span span) {
+  std::vector<std::size_t> const rows = added_in(layer, span);
+  std::vector<double> const radii = radii_of(layer.bed, rows);
+  zone.grains = static_cast<std::int64_t>(rows.size());
+  zone.d10 = diameter_quantile(radii, 0.1, Weight::volume);
+  zone.d50 = diameter_quantile(radii, 0.5, Weight::volume);
+  zone.d90 = diameter_quantile(radii, 0.9, Weight::volume);
+  zone.d10_number = diameter_quantile(radii, 0.1, Weight::number);
+  zone.d50_number = diameter_quantile(radii, 0.5, Weight::number);
+  zone.d90_number = diameter_quantile(radii, 0.9, Weight::number);
+  zone.mean_diameter = mean_diameter(radii, 1, 0);
+  zone.sauter_diameter = mean_diameter(radii, 3, 2);
+  zone.mass_diameter = mean_diameter(radii, 4, 3);
+  std::int64_t contacts = 0, rattlers = 0;
+  for (std::size_t const i : rows) {
+    contacts += layer.contacts[i];
+    rattlers += layer.contacts[i] <= 1 ? 1 : 0;
+  }
+  double const grains = static_cast<double>(rows.size());
+  zone.coordination_number = rows.empty() ? nothing : static_cast<double>(contacts) / grains;
+  zone.rattler_fraction = rows.empty() ? nothing : static_cast<double>(rattlers) / grains;
+}
+
+/// Front: the third of the interior that the blade reaches first.
+double segregation(SpreadLayer const& layer) {
+  Span const inside = interior(layer.checked);
+  double const third = (inside.to - inside.from) / 3;
+  auto const d50 = [&](Span span) {
+    return diameter_quantile(radii_of(layer.bed, added_in(layer, span)), 0.5, Weight::volume);
+  };
+  return (d50({inside.from, inside.from + third}) - d50({inside.to - third, inside.to})) /
+         fed_diameter_quantile(layer.checked.powder, 0.5, Weight::volume);
+}
+
+double lacey(SpreadLayer const& layer, std::vector<Span> const& bins) {
+  double const median = fed_diameter_quantile(layer.checked.powder, 0.5, Weight::number);
+  std::vector<std::size_t> coarse, all;
+  for (Span const bin : bins) {
+    std::vector<std::size_t> const rows = added_in(layer, bin);
+    all.push_back(rows.size());
+    coarse.push_back(static_cast<std::size_t>(
+        std::ranges::count_if(rows, [&](std::size_t i) { return 2 * layer.bed.radius[i] > median * (1 - 1e-9); })));
+  }
+  return lacey_index(coarse, all);
+}
+
+SpreadLayer spread_layer(PowderBed const& bed, HeightMap const& after, LayerBase const& before, Case const& checked) {
+  MachineSettings const& m = checked.machine;
+  SpreadLayer layer{bed, before.surface, after, checked, {}, touching_grains(bed, m.width), {}};
+  std::vector<Disc> discs;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    if (bed.x[i] < m.deposition_begin() || bed.x[i] >= m.deposition_end()) continue;
+    if (std::ranges::binary_search(before.grains, bed.id[i])) continue;
+    layer.added.push_back(i);
+    discs.push_back({bed.x[i], bed.y[i], bed.radius[i]});
+  }
+  layer.rim = rim_of_union(std::move(discs), m.width);
+  return layer;
 }
 }  // namespace
 
@@ -110,85 +190,29 @@ HeightMap height_map(PowderBed const& bed, HeightMap const& base) {
 
 LayerBase layer_base(PowderBed const& bed, HeightMap const& solid, Case const& checked) {
   MachineSettings const& m = checked.machine;
-  LayerBase base{height_map(bed, solid), {}, std::vector<double>(bins), volume_in(bed, interior(checked))};
+  LayerBase base{height_map(bed, solid), {}, {}};
   for (std::size_t i = 0; i < bed.size(); ++i) {
     if (Span{m.deposition_begin(), m.deposition_end()}.holds(bed.x[i])) base.grains.push_back(bed.id[i]);
   }
-  for (std::size_t b = 0; b < bins; ++b) base.volume_by_bin[b] = volume_in(bed, bin_span(m, b));
+  for (Span const span : zones(checked)) base.volume.push_back(volume_in(bed, span));
   return base;
 }
 
 LayerMetrics measure_layer(PowderBed const& bed, HeightMap const& solid, LayerBase const& before, Case const& checked) {
-  MachineSettings const& m = checked.machine;
-  Span const inside = interior(checked);
   LayerMetrics metrics;
   metrics.surface = height_map(bed, solid);
-  HeightMap const& after = metrics.surface;
-  double const height = mean_height(after, inside), height_before = mean_height(before.surface, inside);
-  double const added = volume_in(bed, inside) - before.interior_volume;
-  metrics.effective_thickness = height + m.layer_thickness - m.blade_clearance;
-  metrics.real_effective_thickness = height - height_before;
-  metrics.void_layer = m.blade_clearance - height_before;
-  metrics.volume_fraction_nominal = added / (area(m, inside) * m.layer_thickness);
-  if (metrics.real_effective_thickness > no_thickness)
-    metrics.volume_fraction_real = added / (area(m, inside) * metrics.real_effective_thickness);
-
-  double const raised = 0.25 * *std::ranges::min_element(checked.powder.diameters);
-  metrics.surface_coverage = mean_over(after, inside, [&](std::int32_t i, std::int32_t j) {
-    return after.at(i, j) > before.surface.at(i, j) + raised ? 1.0 : 0.0;
-  });
-  metrics.roughness_sa =
-      mean_over(after, inside, [&](std::int32_t i, std::int32_t j) { return std::abs(after.at(i, j) - height); });
-
-  std::vector<std::size_t> const rows = new_grains(bed, inside, before.grains);
-  metrics.d10 = volume_quantile(bed, rows, 0.1);
-  metrics.d50 = volume_quantile(bed, rows, 0.5);
-  metrics.d90 = volume_quantile(bed, rows, 0.9);
-  for (std::size_t b = 0; b < bins; ++b) metrics.bins.push_back(measure_bin(bed, before, after, checked, b));
+  SpreadLayer const layer = spread_layer(bed, metrics.surface, before, checked);
+  std::vector<Span> const spans = zones(checked);
+  metrics.bins.resize(spans.size() - 1);
+  for (std::size_t z = 0; z < spans.size(); ++z) {
+    ZoneMetrics& zone = z == 0 ? static_cast<ZoneMetrics&>(metrics) : metrics.bins[z - 1];
+    measure_surface(zone, layer, spans[z], volume_in(bed, spans[z]) - before.volume[z]);
+    measure_grains(zone, layer, spans[z]);
+    if (z > 0) metrics.bins[z - 1].x = spans[z].centre();
+  }
+  metrics.segregation_index = segregation(layer);
+  metrics.lacey_index = lacey(layer, {spans.begin() + 1, spans.end()});
   return metrics;
-}
-
-std::map<std::string, std::string> definitions() {
-  std::string const interior =
-      " Taken over the interior of the deposition zone: its full width, without two largest grain diameters at either "
-      "end along x.";
-  return {
-      {"effective_thickness",
-       "ELT: mean height of the surface after spreading above the plane one nominal layer thickness below the "
-       "blade. The surface is the top of the highest grain or solid over the centre of each pixel." +
-           interior},
-      {"real_effective_thickness",
-       "RELT: mean height of the surface after spreading minus that before it, both with the plate lowered." +
-           interior},
-      {"void_layer",
-       "VL: height of the blade's lower edge minus the mean height of the surface before spreading; VL(n+1) = NLT(n+1) "
-       "+ "
-       "NLT(n) - ELT(n) where nothing moves between the layers." +
-           interior},
-      {"volume_fraction_nominal",
-       "Volume of the grains in the zone after spreading minus that before it, over area times nominal layer "
-       "thickness; grains count by their centre." +
-           interior},
-      {"volume_fraction_real", "The same volume over area times RELT; 0 without a layer." + interior},
-      {"surface_coverage",
-       "Share of the area seen from above that spreading has raised by more than a quarter of the smallest grain "
-       "diameter: where a grain of this layer is on top." +
-           interior},
-      {"roughness_sa",
-       "Sa: mean distance of the surface after spreading from its mean height (no filter, no tilt removed)." +
-           interior},
-      {"d10",
-       "Smallest diameter such that grains up to it hold 10 % of the volume of the grains that were not in the zone "
-       "before." +
-           interior},
-      {"d50", "The same for 50 %." + interior},
-      {"d90", "The same for 90 %." + interior},
-      {"bins",
-       "15 equal slices of the whole deposition zone along x. relative_density: added grain volume over slice area "
-       "times RELT of "
-       "the slice; effective_thickness: as ELT; mean_diameter: number mean of the grains that were not in the zone "
-       "before."},
-  };
 }
 
 }  // namespace layerloop::dem

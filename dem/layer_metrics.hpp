@@ -17,10 +17,9 @@ HeightMap height_map(PowderBed const& bed, HeightMap const& base);
 
 /// The deposition zone before the blade comes.
 struct LayerBase {
-  HeightMap surface;                  ///< bed and solid
-  std::vector<std::int64_t> grains;   ///< ids of those with their centre in the zone, ascending
-  std::vector<double> volume_by_bin;  ///< of those grains [m^3], over all bins of LayerMetrics
-  double interior_volume = 0;         ///< of those in the interior [m^3]
+  HeightMap surface;                 ///< bed and solid
+  std::vector<std::int64_t> grains;  ///< ids of those with their centre in the zone, ascending
+  std::vector<double> volume;        ///< of those grains in the interior, then in each bin [m^3]
 };
 
 /// \param solid  height of plate and part over the deposition zone: x from deposition_begin to deposition_end, y in [0,

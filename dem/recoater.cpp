@@ -70,7 +70,7 @@ void note(SpreadOutcome& outcome, Simulation const& simulation) {
 }  // namespace
 
 SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate,
-                     Communicator const& communicator, bool show_progress) {
+                     Communicator const& communicator, bool show_progress, StrokeWatch const& watch) {
   MachineSettings const& machine = checked.machine;
   Motion const motion = motion_of(checked);
   SpreadOutcome outcome;
@@ -91,11 +91,16 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   Simulation stroke(motion, machine_rig(checked, substrate, bed, Tools::moving_blade), communicator);
   stroke.scatter(bed);
   double const duration = blade_stroke(machine) / machine.recoating_speed;
+  double next_look = 0;
   Progress progress("spread", duration, show_progress && communicator.is_root());
   for (auto left = static_cast<std::int64_t>(std::ceil(duration / motion.time_step)); left > 0;
        left -= steps_between_progress) {
     stroke.advance(std::min(left, steps_between_progress));
     progress.update(stroke.time());
+    double const front = stroke.time() * machine.recoating_speed;
+    if (!watch || front < next_look) continue;
+    watch(stroke.gather(), front);
+    next_look = front + 50e-6;
   }
   bed = stroke.gather();
   note(outcome, stroke);

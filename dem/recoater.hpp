@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "core/case.hpp"
@@ -24,13 +25,16 @@ struct SpreadOutcome {
   double steps_per_contact = 0;  ///< of the smallest grain at the recoating speed
 };
 
+/// Sees the bed about every 50 um of the blade's travel.
+using StrokeWatch = std::function<void(PowderBed const& bed, double blade_front)>;
+
 /// Moves the blade over accumulation zone, gap and deposition zone, clears the end platform and lets the layer settle.
 /// The blade is rigid: before it moves, the substrate is searched for solid above its lower edge.
 /// Collective; every rank gets the same bed.
 /// \throws PhysicsError raised solid and BladeCollision::stop; a guard of Simulation
 /// \throws StoppedBySignal
 SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const& substrate,
-                     Communicator const& communicator, bool show_progress);
+                     Communicator const& communicator, bool show_progress, StrokeWatch const& watch = {});
 
 /// Lowers the grains of the deposition zone with the plate, by one layer thickness (the caller lowers plate and part).
 /// A grain that would be pushed into a wall, or onto a grain that stays, stays too and falls in later: no overlap is

@@ -5,31 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 
-#include "core/write_file.hpp"
+#include "coupling/report/csv_table.hpp"
 
 namespace layerloop::coupling {
 namespace {
-
-/// Rows of numbers under one header line; what is not finite stays blank.
-class CsvTable {
- public:
-  explicit CsvTable(std::string_view header) : text_(header) { text_ += '\n'; }
-
-  void row(std::initializer_list<double> values) {
-    for (auto value = values.begin(); value != values.end(); ++value) {
-      if (value != values.begin()) text_ += ',';
-      if (std::isfinite(*value)) fmt::format_to(std::back_inserter(text_), "{:.9g}", *value);
-    }
-    text_ += '\n';
-  }
-
-  void write(std::filesystem::path const& path) const { write_file(path, text_); }
-
- private:
-  std::string text_;
-};
 
 void write_layers(ReportInput const& input) {
   CsvTable table(
@@ -39,7 +19,10 @@ void write_layers(ReportInput const& input) {
       "[K],pool_width [um],"
       "pool_width_u_num [um],pool_depth [um],pool_depth_u_num [um],pool_length [um],pool_length_u_num [um],melted_mass "
       "[kg],"
-      "part_relative_density");
+      "part_relative_density,roughness_sq [um],roughness_sz [um],d10_number [um],d50_number [um],d90_number "
+      "[um],mean_diameter [um],sauter_diameter [um],mass_diameter [um],coordination_number,rattler_fraction,"
+      "segregation_index,lacey_index,settled_height [um],settled_density,heap_angle_accumulation "
+      "[deg],heap_angle_deposition [deg],reservoir_mean_diameter [um],reservoir_mass_ratio,blade_force [N]");
   for (LayerRecord const& l : input.record.layers) {
     LayerMetrics const& m = l.metrics;
     table.row({double(l.layer),
@@ -64,17 +47,40 @@ void write_layers(ReportInput const& input) {
                1e6 * l.pool.length,
                1e6 * l.pool_u_num.length,
                l.consolidation.melted_mass,
-               l.consolidation.part_relative_density});
+               l.consolidation.part_relative_density,
+               1e6 * m.roughness_sq,
+               1e6 * m.roughness_sz,
+               1e6 * m.d10_number,
+               1e6 * m.d50_number,
+               1e6 * m.d90_number,
+               1e6 * m.mean_diameter,
+               1e6 * m.sauter_diameter,
+               1e6 * m.mass_diameter,
+               m.coordination_number,
+               m.rattler_fraction,
+               m.segregation_index,
+               m.lacey_index,
+               1e6 * l.stroke.settled_height,
+               l.stroke.settled_density,
+               l.stroke.heap_angle_accumulation,
+               l.stroke.heap_angle_deposition,
+               1e6 * l.stroke.reservoir_mean_diameter,
+               l.stroke.reservoir_mass_ratio,
+               l.stroke.blade_force});
   }
   table.write(input.folder / "layers.csv");
 }
 
 void write_profiles(ReportInput const& input) {
-  CsvTable table("layer,x [um],relative_density,effective_thickness [um],mean_diameter [um],grains");
+  CsvTable table(
+      "layer,x [um],relative_density,effective_thickness [um],mean_diameter [um],grains,real_effective_thickness "
+      "[um],volume_fraction_nominal,surface_coverage,roughness_sa [um],d50 [um],coordination_number");
   for (LayerRecord const& layer : input.record.layers)
     for (LayerBin const& bin : layer.metrics.bins)
-      table.row({double(layer.layer), 1e6 * bin.x, bin.relative_density, 1e6 * bin.effective_thickness,
-                 1e6 * bin.mean_diameter, double(bin.grains)});
+      table.row({double(layer.layer), 1e6 * bin.x, bin.volume_fraction_real, 1e6 * bin.effective_thickness,
+                 1e6 * bin.mean_diameter, double(bin.grains), 1e6 * bin.real_effective_thickness,
+                 bin.volume_fraction_nominal, bin.surface_coverage, 1e6 * bin.roughness_sa, 1e6 * bin.d50,
+                 bin.coordination_number});
   table.write(input.folder / "profiles.csv");
 }
 
@@ -157,7 +163,8 @@ void write_csv_tables(ReportInput const& input) {
     };
     double const above_plate = 1e6 * input.checked.machine.layer_thickness * layer->layer;
     write_map(layer->metrics.surface, "surface [um]", 1e6, 0, path("surface"));
-    write_map(layer->part_surface, "height_above_plate [um]", 1e6, above_plate, path("part_surface"));
+    if (input.part_grows())
+      write_map(layer->part_surface, "height_above_plate [um]", 1e6, above_plate, path("part_surface"));
     if (input.laser()) write_map(layer->absorbed_energy, "absorbed_energy [J/mm2]", 1e-6, 0, path("absorbed_energy"));
   }
 }

@@ -111,9 +111,9 @@ std::string profiles(ReportInput const& input) {
     density.push_back(empty), thickness.push_back(empty), diameter.push_back(empty);
     for (LayerBin const& bin : layer->metrics.bins) {
       for (auto* plot : {&density, &thickness, &diameter}) plot->back().x.push_back(1e6 * bin.x);
-      density.back().y.push_back(bin.relative_density);
+      density.back().y.push_back(bin.volume_fraction_real);
       thickness.back().y.push_back(1e6 * bin.effective_thickness);
-      diameter.back().y.push_back(bin.grains > 0 ? 1e6 * bin.mean_diameter : std::nan(""));
+      diameter.back().y.push_back(1e6 * bin.mean_diameter);
     }
   }
   std::string const x = "x [\xc2\xb5m]";
@@ -178,6 +178,8 @@ Series over_layers(RunRecord const& record, std::string name, Value value, Error
   for (LayerRecord const& layer : record.layers) series.error.push_back(error(layer));
   return series;
 }
+
+double or_none(double error) { return std::isfinite(error) ? error : 0; }
 
 }  // namespace
 
@@ -285,6 +287,12 @@ std::string trends(ReportInput const& input) {
       trend("diameter by volume [\xc2\xb5m]", {over_layers(r, "D10", [](L l) { return 1e6 * l.metrics.d10; }),
                                                over_layers(r, "D50", [](L l) { return 1e6 * l.metrics.d50; }),
                                                over_layers(r, "D90", [](L l) { return 1e6 * l.metrics.d90; })});
+  figures += trend("heap angle [deg]", {over_layers(
+                                            r, "accumulation", [](L l) { return l.stroke.heap_angle_accumulation; },
+                                            [](L l) { return or_none(l.stroke.heap_angle_accumulation_u_num); }),
+                                        over_layers(
+                                            r, "deposition", [](L l) { return l.stroke.heap_angle_deposition; },
+                                            [](L l) { return or_none(l.stroke.heap_angle_deposition_u_num); })});
   if (input.laser()) {
     figures += trend("absorptivity", {over_layers(
                                          r, "absorptivity", [](L l) { return l.absorptivity; },
@@ -298,8 +306,9 @@ std::string trends(ReportInput const& input) {
          over_layers(
              r, "length", [](L l) { return 1e6 * l.pool.length; }, [](L l) { return 1e6 * l.pool_u_num.length; })});
   }
-  figures += trend("relative density of the part",
-                   {over_layers(r, "density", [](L l) { return l.consolidation.part_relative_density; })});
+  if (input.part_grows())
+    figures += trend("relative density of the part",
+                     {over_layers(r, "density", [](L l) { return l.consolidation.part_relative_density; })});
   return grid(figures);
 }
 

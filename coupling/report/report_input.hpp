@@ -21,7 +21,8 @@ struct ReportInput {
   std::vector<LayerRecord const*>
       shown;  ///< layers with pictures and maps: all of a short run, else evenly spread ones
 
-  bool laser() const { return !checked.machine.frozen_zone; }
+  bool laser() const { return checked.has_laser(); }
+  bool part_grows() const { return checked.has_part(); }
   LayerRecord const& last() const { return record.layers.back(); }
   std::size_t layer_count() const { return record.layers.size(); }
 };

@@ -54,8 +54,49 @@ std::vector<Row> powder_rows() {
           {"volume fraction, real", "", [](L l) { return significant(l.metrics.volume_fraction_real); }},
           {"surface coverage", "", [](L l) { return significant(l.metrics.surface_coverage); }},
           {"roughness Sa", "&micro;m", [](L l) { return um(l.metrics.roughness_sa); }},
+          {"roughness Sq", "&micro;m", [](L l) { return um(l.metrics.roughness_sq); }},
+          {"roughness Sz", "&micro;m", [](L l) { return um(l.metrics.roughness_sz); }},
           {"D10, D50, D90 by volume", "&micro;m",
-           [](L l) { return fmt::format("{}, {}, {}", um(l.metrics.d10), um(l.metrics.d50), um(l.metrics.d90)); }}};
+           [](L l) { return fmt::format("{}, {}, {}", um(l.metrics.d10), um(l.metrics.d50), um(l.metrics.d90)); }},
+          {"D10, D50, D90 by number", "&micro;m",
+           [](L l) {
+             return fmt::format("{}, {}, {}", um(l.metrics.d10_number), um(l.metrics.d50_number),
+                                um(l.metrics.d90_number));
+           }},
+          {"mean diameter D[1,0], D[3,2], D[4,3]", "&micro;m",
+           [](L l) {
+             return fmt::format("{}, {}, {}", um(l.metrics.mean_diameter), um(l.metrics.sauter_diameter),
+                                um(l.metrics.mass_diameter));
+           }},
+          {"coordination number", "", [](L l) { return significant(l.metrics.coordination_number); }},
+          {"share of rattlers", "", [](L l) { return significant(l.metrics.rattler_fraction); }},
+          {"segregation index", "", [](L l) { return significant(l.metrics.segregation_index, 2); }},
+          {"Lacey index", "", [](L l) { return significant(l.metrics.lacey_index); }}};
+}
+
+std::vector<Row> stroke_rows() {
+  using L = LayerRecord const&;
+  using S = StrokeMetrics const&;
+  return {
+      {"settled height of the feed", "&micro;m", [](L l) { return um(l.stroke.settled_height); }},
+      {"settled density of the feed", "", [](L l) { return significant(l.stroke.settled_density); }},
+      {"heap angle, accumulation", "deg",
+       [](L l) {
+         S s = l.stroke;
+         return with_uncertainty(s.heap_angle_accumulation, s.heap_angle_accumulation_u_num);
+       }},
+      {"heap angle, deposition", "deg",
+       [](L l) {
+         S s = l.stroke;
+         return with_uncertainty(s.heap_angle_deposition, s.heap_angle_deposition_u_num);
+       }},
+      {"mean diameter in the reservoir, before and after", "&micro;m",
+       [](L l) {
+         return fmt::format("{}, {}", um(l.stroke.reservoir_mean_diameter_before),
+                            um(l.stroke.reservoir_mean_diameter));
+       }},
+      {"mass left in the reservoir over before", "", [](L l) { return significant(l.stroke.reservoir_mass_ratio); }},
+      {"largest force on the blade", "mN", [](L l) { return significant(1e3 * l.stroke.blade_force); }}};
 }
 
 std::vector<Row> laser_rows() {
@@ -82,15 +123,14 @@ std::vector<Row> part_rows() {
 
 }  // namespace
 
-std::string headline(ReportInput const& input) {
-  Case const& c = input.checked;
+std::string headline(Case const& c, std::size_t layers) {
   auto const um = [](double metres) { return chosen(1e6 * metres); };
-  std::size_t const layers = input.layer_count();
   std::string text = fmt::format(
       "{} layer{} of {} powder, {} &micro;m each, spread by a blade at {} mm/s over {} &times; {} &micro;m. ", layers,
       layers == 1 ? "" : "s", escape(c.material.name), um(c.machine.layer_thickness),
       chosen(1e3 * c.machine.recoating_speed), um(c.machine.deposition_length), um(c.machine.width));
-  if (!input.laser()) return text + "No laser: a zone of the bed was frozen and meshed.";
+  if (c.machine.frozen_zone) return text + "No laser: a zone of the bed was frozen and meshed.";
+  if (!c.has_laser()) return text + "No laser: the powder stays as it was spread.";
   std::string const tracks = c.scan.kind == ScanKind::hatch
                                  ? fmt::format("{} tracks of {} &micro;m a layer, {} &micro;m apart,", c.scan.tracks,
                                                um(c.scan.track_length), um(c.scan.hatch_spacing))
@@ -116,10 +156,10 @@ std::string cards(ReportInput const& input) {
       card("Packing of the layer", significant(m.volume_fraction_real), "",
            fmt::format("volume fraction, real; {} % of the surface is covered", significant(100 * m.surface_coverage)));
   if (input.laser()) all += laser_cards(last);
-  Consolidation const& part = last.consolidation;
-  all += card("Part density", significant(100 * part.part_relative_density, 4), "%",
-              fmt::format("{} grains melted, {} trapped whole inside", input.record.ledger.particles_melted,
-                          input.record.ledger.particles_trapped));
+  if (input.part_grows())
+    all += card("Part density", significant(100 * last.consolidation.part_relative_density, 4), "%",
+                fmt::format("{} grains melted, {} trapped whole inside", input.record.ledger.particles_melted,
+                            input.record.ledger.particles_trapped));
   std::vector<LedgerCheck> const checks = ledger_checks(input.record.ledger, input.laser());
   auto const closed = std::count_if(checks.begin(), checks.end(), [](LedgerCheck const& check) { return check.holds; });
   bool const good = closed == static_cast<std::ptrdiff_t>(checks.size());
@@ -136,8 +176,9 @@ std::string cards(ReportInput const& input) {
 std::string layer_table(ReportInput const& input) {
   std::vector<Row> rows = powder_rows();
   auto const add = [&](std::vector<Row> more) { rows.insert(rows.end(), more.begin(), more.end()); };
+  add(stroke_rows());
   if (input.laser()) add(laser_rows());
-  add(part_rows());
+  if (input.part_grows()) add(part_rows());
   std::string table = "<table class=\"figures\"><thead><tr><th>quantity</th><th>unit</th>";
   for (LayerRecord const& layer : input.record.layers) table += fmt::format("<th>layer {}</th>", layer.layer);
   table += "</tr></thead><tbody>\n";

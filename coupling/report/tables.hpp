@@ -6,7 +6,7 @@
 namespace layerloop::coupling {
 
 // Each returns HTML.
-std::string headline(ReportInput const& input);       ///< what was run, in one or two sentences
+std::string headline(Case const& checked, std::size_t layers);  ///< what was run, in one or two sentences
 std::string cards(ReportInput const& input);          ///< the figures to look at first, with their uncertainty
 std::string layer_table(ReportInput const& input);    ///< a row per quantity, a column per layer
 std::string ledger_tables(ReportInput const& input);  ///< mass and particles, light and heat, with their verdicts

@@ -72,7 +72,9 @@ TEST_F(ReportTest, a_picture_from_elsewhere_is_refused) {
 
 TEST_F(ReportTest, every_plot_has_its_numbers_beside_it) {
   std::string const html = written();
-  EXPECT_EQ(header("profiles.csv"), "layer,x [um],relative_density,effective_thickness [um],mean_diameter [um],grains");
+  EXPECT_EQ(header("profiles.csv"),
+            "layer,x [um],relative_density,effective_thickness [um],mean_diameter [um],grains,real_effective_thickness "
+            "[um],volume_fraction_nominal,surface_coverage,roughness_sa [um],d50 [um],coordination_number");
   EXPECT_EQ(header("surface_0001.csv"), "x [um],y [um],surface [um]");
   EXPECT_EQ(header("absorbed_energy_0002.csv"), "x [um],y [um],absorbed_energy [J/mm2]");
   EXPECT_EQ(header("part_surface_0002.csv"), "x [um],y [um],height_above_plate [um]");

@@ -108,6 +108,7 @@ TEST(RunRecord, no_member_is_forgotten) {
   EXPECT_EQ(layer["consolidation"].size(), sizeof(Consolidation) / 8);
   EXPECT_EQ(layer["pool"].size(), sizeof(PoolSize) / 8);
   EXPECT_EQ(layer["metrics"]["bins"][0].size(), sizeof(LayerBin) / 8);
+  EXPECT_EQ(layer["stroke"].size(), sizeof(StrokeMetrics) / 8);
 }
 
 TEST(RunRecord, damaged_text_is_named) {
@@ -150,6 +151,25 @@ TEST(Summary, leaves_the_laser_out_where_a_zone_was_frozen) {
   EXPECT_FALSE(layer.contains("absorptivity"));
   EXPECT_FALSE(layer.contains("pool"));
   EXPECT_TRUE(layer.contains("effective_thickness"));
+}
+
+TEST(Summary, OfSpreadPowderHasStrokeAndBinsAtTheTop) {
+  SampleRun run = sample_run();
+  run.checked.process = Process::spreading;
+  run.record.layers[1].stroke.heap_angle_accumulation = 31;
+  run.record.layers[1].stroke.heap_angle_deposition = std::nan("");
+  json const all = summary(run.checked, run.record, run.extras);
+  EXPECT_EQ(all["verb"], "spread");
+  EXPECT_EQ(all["heap_angle_accumulation"], 31);
+  EXPECT_TRUE(all["heap_angle_deposition"].is_null()) << "nothing was there to measure";
+  for (char const* key : {"reservoir_mean_diameter", "reservoir_mass_ratio", "settled_height", "settled_density"})
+    EXPECT_TRUE(all.at(key).is_number()) << key;
+  ASSERT_EQ(all["bins"].size(), 2u);
+  for (char const* key : {"x", "relative_density", "effective_thickness", "mean_diameter"})
+    EXPECT_TRUE(all["bins"][0].at(key).is_number()) << key;
+  EXPECT_TRUE(all["bins"][1]["relative_density"].is_null());
+  EXPECT_FALSE(all["layers"][0].contains("absorptivity"));
+  EXPECT_FALSE(all["layers"][0].contains("part_relative_density"));
 }
 
 }  // namespace

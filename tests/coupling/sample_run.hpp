@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <limits>
 
 #include "core/case.hpp"
 #include "core/case_schema.hpp"
@@ -58,7 +59,10 @@ inline LayerRecord sample_layer(std::int32_t n) {
   layer.grains_in_layer = 3;
   layer.grains_nipped = 1;
   layer.metrics.effective_thickness = 21e-6;
-  layer.metrics.bins = {{110e-6, 0.5, 20e-6, 21e-6, 2}, {190e-6, 0.4, 18e-6, 0, 0}};
+  layer.metrics.bins.resize(2);
+  layer.metrics.bins[0].x = 110e-6;
+  layer.metrics.bins[1].x = 190e-6;
+  layer.metrics.bins[1].volume_fraction_real = std::numeric_limits<double>::quiet_NaN();
   AreaMap const map{
       .x0 = 100e-6, .y0 = 0, .spacing = 10e-6, .nx = 20, .ny = 5, .values = std::vector<double>(100, -30e-6)};
   layer.metrics.surface = layer.part_surface = layer.absorbed_energy = map;

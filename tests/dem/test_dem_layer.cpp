@@ -190,7 +190,7 @@ TEST(Metrics, OfASquareLatticeOfSpheres) {
 
   double const coverage = pi / 4, volume_over_area = 4.0 / 3.0 * pi * R * R * R / (4 * R * R);
   double const relt = coverage * 5.0 / 3.0 * R;  // mean top of a hemisphere: R + 2/3 R
-  EXPECT_NEAR(metrics.surface_coverage, coverage, 2e-3);
+  EXPECT_NEAR(metrics.surface_coverage, coverage, 1e-12);
   EXPECT_NEAR(metrics.real_effective_thickness, relt, 3e-3 * relt);
   EXPECT_NEAR(metrics.effective_thickness, relt, 3e-3 * relt);  // the plate is one layer below the blade
   EXPECT_NEAR(metrics.void_layer, m.layer_thickness, 1e-15);
@@ -202,7 +202,7 @@ TEST(Metrics, OfASquareLatticeOfSpheres) {
   ASSERT_EQ(metrics.bins.size(), 15U);
   for (LayerBin const& bin : metrics.bins) {
     EXPECT_EQ(bin.grains, 3);
-    EXPECT_NEAR(bin.relative_density, 0.8, 3e-3);
+    EXPECT_NEAR(bin.volume_fraction_real, 0.8, 3e-3);
     EXPECT_DOUBLE_EQ(bin.mean_diameter, 2 * R);
   }
   // Sa: the bare share lies at 0, the covered share has heights R + sqrt(R^2 - r^2); integrated with a fine radial sum
