@@ -23,6 +23,7 @@ struct CaseOptions {
 using Action = std::function<void()>;
 void add_run(CLI::App& program, Action& chosen);
 void add_spread(CLI::App& program, Action& chosen);
+void add_bench(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);
 void add_doctor(CLI::App& program, Action& chosen);
 

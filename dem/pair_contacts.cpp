@@ -288,6 +288,14 @@ void make_dormant(Neighbours& neighbours, std::vector<NearPairs const*> const& s
   neighbours.spring = std::move(place);
 }
 
+std::int64_t count_touching(NearPairs const& near, Neighbours const& neighbours, std::size_t owned) {
+  std::int64_t count = 0;
+  for_each_spring(near, neighbours, [&](std::size_t k, PairSpring const&) {
+    count += static_cast<std::size_t>(neighbours.first[k]) < owned;
+  });
+  return count;
+}
+
 void append_springs(NearPairs const& near, Neighbours const& neighbours, Grains const& g,
                     std::vector<LocalSpring>& springs) {
   for_each_spring(near, neighbours, [&](std::size_t k, PairSpring const& s) {

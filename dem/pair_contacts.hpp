@@ -57,6 +57,9 @@ void make_dormant(Neighbours& neighbours, std::vector<NearPairs const*> const& s
 void append_springs(NearPairs const& near, Neighbours const& neighbours, Grains const& grains,
                     std::vector<LocalSpring>& springs);
 
+/// Touching pairs of the rows of `near` whose first row is below `owned`.
+std::int64_t count_touching(NearPairs const& near, Neighbours const& neighbours, std::size_t owned);
+
 /// Adds what the pairs of one chunk do to their grains. No allocation.
 /// \param actions  slots() of them, of this thread
 /// \return largest overlap over the smaller grain's diameter

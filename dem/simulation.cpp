@@ -64,6 +64,7 @@ void Simulation::scatter(PowderBed const& bed) {
   first_springs_ = bed.contacts;
   steps_ = next_sink_check_ = next_sleep_check_ = rebuilds_ = nipped_ = 0;
   largest_overlap_ = blade_force_ = 0;
+  phases_ = {};
   watch_ = {};
   if (bed.size() == 0) throw InputError("there is no grain to move (the bed is empty) raise powder.particles");
   auto const [smallest, largest] = std::ranges::minmax(bed.radius);
@@ -101,6 +102,7 @@ void Simulation::append_all_springs(std::vector<LocalSpring>& springs) const {
 }
 
 void Simulation::rebuild() {
+  PhaseClock clock;
   std::vector<LocalSpring> local;
   append_all_springs(local);
   std::vector<GrainRecord> records(grains_.owned);
@@ -142,6 +144,7 @@ void Simulation::rebuild() {
   team_.allow(std::clamp(static_cast<int>(grains_.owned / grains_a_thread), 1, std::min(omp_get_max_threads(), cores)));
   shares_.clear();
   share_out(team_.threads());
+  clock.add_to(phases_.neighbours);
 }
 
 void Simulation::share_out(int shares) {
@@ -202,11 +205,12 @@ void Simulation::choose_near_pairs(Share& share, double half_gap) {
   share.actions.assign(share.near.slots(), {});
 }
 
-void Simulation::evaluate(Share& share, std::size_t chunk, double now) {
+void Simulation::evaluate(Share& share, std::size_t chunk, double now, PhaseClock& clock, PhaseTimes& times) {
   std::size_t const from = share.near.from + chunk * NearPairs::rows_a_chunk,
                     to = std::min(from + NearPairs::rows_a_chunk, share.near.to);
   double const dt = motion_.time_step;
   double const overlap = evaluate_pairs(share.near, chunk, grains_, laws_, period_, dt, unit_, share.actions.data());
+  clock.add_to(times.pairs);
   auto const& near_walls = wall_contacts_.grain;
   auto const entry = [&](std::size_t row) {
     return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
@@ -216,6 +220,7 @@ void Simulation::evaluate(Share& share, std::size_t chunk, double now) {
                                            entry(from), entry(to));
   share.watch.overlap = std::max({share.watch.overlap, overlap, report.worst_overlap});
   share.pushed_back += report.pushed_back;
+  clock.add_to(times.walls);
 }
 
 void Simulation::run_steps(std::int64_t count) {
@@ -227,6 +232,8 @@ void Simulation::run_steps(std::int64_t count) {
     int const threads = omp_get_num_threads();
     Share& own = shares_[number];
     own.watch = {};
+    PhaseTimes times;
+    PhaseClock clock;
     double way = way_since_choice_, half_gap = half_gap_;  // the same on all threads
     for (std::int64_t s = 0; s < count; ++s) {
       own.pushed_back = 0;
@@ -236,7 +243,7 @@ void Simulation::run_steps(std::int64_t count) {
       double const now = static_cast<double>(steps_ + s) * motion_.time_step;
       double fastest = 0;
       for (std::size_t chunk = 0; chunk < own.near.chunks(); ++chunk) {
-        evaluate(own, chunk, now);
+        evaluate(own, chunk, now, clock, times);
         std::size_t const from = own.near.from + chunk * NearPairs::rows_a_chunk,
                           to = std::min(from + NearPairs::rows_a_chunk, own.near.to),
                           held = std::clamp(waits, from, to);
@@ -245,11 +252,14 @@ void Simulation::run_steps(std::int64_t count) {
         take_from_ring(own.actions.data(), held, to, actions);
         add_far_actions(number, held, to, actions);
         fastest = std::max(fastest, move(own, held, to, actions));
+        clock.add_to(times.motion);
       }
       barrier.wait(threads);
+      clock.add_to(times.communication);
       add_far_actions(number, own.near.from, waits, own.held.data());
       fastest = std::max(fastest, move(own, own.near.from, waits, own.held.data()));
       own.fastest_squared = fastest;
+      clock.add_to(times.motion);
       barrier.wait(threads);
       if (decomposition_.size() > 1) {
         if (number == 0) {
@@ -258,6 +268,7 @@ void Simulation::run_steps(std::int64_t count) {
         }
         barrier.wait(threads);
       }
+      clock.add_to(times.communication);
       fastest = ghosts_fastest_squared_;
       for (Share const& share : shares_) fastest = std::max(fastest, share.fastest_squared);
       way += std::sqrt(fastest) * motion_.time_step;
@@ -266,12 +277,20 @@ void Simulation::run_steps(std::int64_t count) {
         way = 0;
         choose_near_pairs(own, half_gap);
         barrier.wait(threads);
+        clock.add_to(times.neighbours);
       }
     }
 #pragma omp single
     {
       way_since_choice_ = way;
       half_gap_ = half_gap;
+    }
+    if (number == 0) {
+      phases_.pairs += times.pairs;
+      phases_.walls += times.walls;
+      phases_.motion += times.motion;
+      phases_.neighbours += times.neighbours;
+      phases_.communication += times.communication;
     }
   }
   steps_ += count;
@@ -388,11 +407,8 @@ std::int64_t Simulation::count_faster_than(double speed) const {
 }
 
 std::int64_t Simulation::touching_pairs() const {
-  std::vector<LocalSpring> springs;
-  for (Share const& share : shares_) append_springs(share.near, neighbours_, grains_, springs);
-  // a pair across a border stands on both of its ranks: it is counted where its lower id is at home
-  std::int64_t const count = std::ranges::count_if(
-      springs, [&](LocalSpring const& s) { return static_cast<std::size_t>(s.row_a) < grains_.owned; });
+  std::int64_t count = 0;  // a pair across a border stands on both of its ranks: counted where its lower id is at home
+  for (Share const& share : shares_) count += count_touching(share.near, neighbours_, grains_.owned);
   return communicator_.sum(count);
 }
 

@@ -13,6 +13,7 @@
 #include "dem/grains.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/pair_contacts.hpp"
+#include "dem/phase_times.hpp"
 #include "dem/thread_team.hpp"
 #include "dem/wall_contacts.hpp"
 #include "dem/walls.hpp"
@@ -87,9 +88,10 @@ class Simulation {
     return nipped_;
   }  ///< grains taken out because a moving wall crushed them, since scatter
   std::int64_t rebuilds() const { return rebuilds_; }
-  std::int64_t touching_pairs() const;  ///< Collective.
-  std::int64_t sleeping() const;        ///< Collective.
-  double coordination() const;          ///< mean number of touching grains of a grain. Collective.
+  std::int64_t touching_pairs() const;                  ///< Collective.
+  PhaseTimes const& phases() const { return phases_; }  ///< of this rank, since scatter
+  std::int64_t sleeping() const;                        ///< Collective.
+  double coordination() const;                          ///< mean number of touching grains of a grain. Collective.
   void set_gravity(Vec3 const& gravity) { rig_.gravity = gravity; }
   /// Grains faster than `speed` [m/s]. Collective.
   std::int64_t count_faster_than(double speed) const;
@@ -131,7 +133,7 @@ class Simulation {
   void share_out(int shares);
   void choose_near_pairs(Share& share, double half_gap);
   double suitable_half_gap(double fastest_squared) const;
-  void evaluate(Share& share, std::size_t chunk, double now);
+  void evaluate(Share& share, std::size_t chunk, double now, PhaseClock& clock, PhaseTimes& times);
   /// Takes what was done to rows [from, to) out of the ring, for later.
   void hold(Share& share, std::size_t from, std::size_t to);
   /// Adds what waits behind the rings of shares [0, number] for rows [from, to) to actions[row - from].
@@ -173,6 +175,7 @@ class Simulation {
   double largest_overlap_ = 0, blade_force_ = 0;
   std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, pushed_back_ = 0, next_sink_check_ = 0,
                next_sleep_check_ = 0;
+  PhaseTimes phases_;
   ThreadTeam team_;
 };
 

@@ -269,7 +269,8 @@ TEST(Coulomb, BoundOnTotalForceLeavesCohesionOut) {
   double const total = normal_force(grain_law(contact), state.radius, state.overlap);
   EXPECT_NEAR((-act<Reach::touch, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * bare, 1e-9 * bare);
   contact.coulomb_on = CoulombOn::total;
-  EXPECT_NEAR((-act<Reach::touch, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * std::abs(total), 1e-9 * bare);
+  EXPECT_NEAR((-act<Reach::touch, RollingModel::cdt>(grain_law(contact), state, 1e-8).fy), 0.7 * std::abs(total),
+              1e-9 * bare);
 }
 
 TEST(RayleighTime, OfTheThesis) {
