@@ -20,6 +20,9 @@ enum class RollingModel { cdt, epsd2 };
 enum class SlidingSpring { rescaled, kept };
 enum class WallCohesionArea { liggghts, eq6 };
 enum class CoulombOn { repulsive, total };
+enum class RecoaterKind { blade, roller, compliant_blade };
+enum class Dosing { feed, rain };
+enum class EndWall { flush, open, high };
 enum class BladeCollision { stop, report };
 enum class SpotDefinition { one_over_e2, d4sigma, fwhm };
 enum class ScanKind { track, hatch };
@@ -63,15 +66,30 @@ struct ContactSettings {
 struct MachineSettings {
   double layer_thickness = 0;
   double recoating_speed = 0;
-  double dose_factor = 0;  ///< grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %
+  Dosing dosing = Dosing::rain;
+  double dose_factor = 0;  ///< of layer 2, 3, ...; see `dosing`
   double accumulation_length = 0, accumulation_depth = 0, gap_length = 0, deposition_length = 0;
   double width = 0;  ///< periodic, across the blade
-  double blade_width = 0, edge_radius = 0, blade_clearance = 0;
+  RecoaterKind recoater = RecoaterKind::blade;
+  double blade_width = 0, edge_radius = 0, edge_exponent = 2, blade_clearance = 0;
+  std::optional<double> blade_friction;  ///< of any recoater; else that of the walls
+  double blade_stiffness = 0;  ///< for each metre of width [N/m^2]
+  double blade_mass = 0;       ///< for each metre of width [kg/m]
+  double blade_damping = 0;    ///< share of critical damping
+  double roller_diameter = 0;
+  double roller_spin = 0;           ///< surface speed over recoating speed; positive: counter-rotating
+  double platform_edge_radius = 20e-6;  ///< of the platforms' edges [m]
+  EndWall end_wall = EndWall::flush;
   BladeCollision blade_collision = BladeCollision::stop;
-  std::string substrate;  ///< STL of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
+  std::string substrate;  ///< STL or PLY of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
+  double plate_roughness = 0, plate_correlation_length = 0;  ///< rms height and length over which it persists [m]
+  double plate_grains = 0;                                   ///< share of the plate that half-sunk grains cover
   std::optional<std::array<double, 2>>
       frozen_zone;  ///< x from, to: freeze and mesh this part of the bed instead of the laser
 
+  /// The piston of the accumulation zone lifts this much before each layer, with Dosing::feed [m].
+  double feed_rise() const { return dose_factor * layer_thickness * deposition_length / accumulation_length; }
+  bool has_textured_plate() const { return plate_roughness > 0 || plate_grains > 0; }
   double deposition_begin() const { return accumulation_length + gap_length; }
   double deposition_end() const { return deposition_begin() + deposition_length; }
 };
@@ -125,6 +143,7 @@ struct RunSettings {
 struct EffectSettings {
   bool enabled = false;
   double strength = 1;
+  std::map<std::string, double> parameters;  ///< SI
 };
 
 struct Case {
@@ -146,6 +165,11 @@ struct Case {
   bool has_laser() const { return process == Process::melting && !machine.frozen_zone; }
   bool has_part() const { return process == Process::melting || machine.frozen_zone; }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
+  /// 0 for an effect that is off (or that a case made without a file does not know).
+  double effect_strength(std::string const& effect) const {
+    auto const found = effects.find(effect);
+    return found != effects.end() && found->second.enabled ? found->second.strength : 0.0;
+  }
 };
 
 }  // namespace layerloop

@@ -32,6 +32,8 @@ class CaseChecks {
   void run() const {
     powder();
     feed();
+    piston();
+    effects();
     time_step();
     machine();
     frozen_zone();
@@ -53,11 +55,49 @@ class CaseChecks {
     origin_.report(key, fmt::format("{} {}", key, fmt::format(text, std::forward<Values>(values)...)));
   }
 
-  double largest() const { return *std::max_element(c_.powder.diameters.begin(), c_.powder.diameters.end()); }
-  double smallest() const { return *std::min_element(c_.powder.diameters.begin(), c_.powder.diameters.end()); }
+  double largest() const { return std::ranges::max(fed_powder(c_).diameters); }
+  double smallest() const { return std::ranges::min(fed_powder(c_).diameters); }
   bool distribution_known() const {
-    return known({"powder.diameters", "powder.fractions"}) && !c_.powder.diameters.empty() &&
-           c_.powder.diameters.size() == c_.powder.fractions.size();
+    return known({"powder.diameters", "powder.fractions", "effects.fines.strength", "effects.fines.mass_fraction",
+                  "effects.fines.diameter"}) &&
+           !c_.powder.diameters.empty() && c_.powder.diameters.size() == c_.powder.fractions.size() &&
+           fines_share() < 1;
+  }
+
+  double fines_share() const {
+    double const strength = c_.effect_strength("fines");
+    return strength > 0 ? strength * c_.effects.at("fines").parameters.at("mass_fraction") : 0.0;
+  }
+
+  void effects() const {
+    if (known({"effects.fines.strength", "effects.fines.mass_fraction"}) && fines_share() >= 1)
+      report("effects.fines.strength", "makes {:g} of the powder's mass fines (must be below 1)", fines_share());
+    double const strength = c_.effect_strength("blade_vibration");
+    if (strength == 0 || !known({"effects.blade_vibration.strength", "effects.blade_vibration.amplitude",
+                                 "effects.blade_vibration.frequency", "machine.blade_clearance"}))
+      return;
+    double const amplitude = strength * c_.effects.at("blade_vibration").parameters.at("amplitude");
+    if (amplitude > c_.machine.blade_clearance) {
+      report("effects.blade_vibration.amplitude",
+             "= {} (the recoater would strike the platforms) raise machine.blade_clearance from {} to at least that",
+             length(amplitude), length(c_.machine.blade_clearance));
+    }
+  }
+
+  /// The piston must not come up to the platforms before the last layer.
+  void piston() const {
+    MachineSettings const& m = c_.machine;
+    if (m.dosing != Dosing::feed || !known({"machine.dosing", "machine.dose_factor", "machine.layer_thickness",
+                                            "machine.deposition_length", "machine.accumulation_length",
+                                            "machine.accumulation_depth", "run.layers"}))
+      return;
+    double const risen = static_cast<double>(c_.run.layers - 1) * m.feed_rise();
+    if (risen > m.accumulation_depth) {
+      report("machine.accumulation_depth",
+             "= {} (the piston rises by {} for each of {} layers and would stand above the platforms) deepen the zone, "
+             "or lower machine.dose_factor or run.layers",
+             length(m.accumulation_depth), length(m.feed_rise()), c_.run.layers);
+    }
   }
 
   void powder() const {
@@ -84,7 +124,7 @@ class CaseChecks {
                                          "machine.accumulation_depth", "machine.width"})) {
       return;
     }
-    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume(c_.powder);
+    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume(fed_powder(c_));
     if (!(volume > 0)) return;
     double const solid_height = volume / (m.accumulation_length * m.width);
     double const loosest = solid_height / 0.5, densest = solid_height / 0.64;
@@ -120,7 +160,13 @@ class CaseChecks {
 
   void machine() const {
     MachineSettings const& m = c_.machine;
-    if (known({"machine.edge_radius", "machine.blade_width"}) && m.edge_radius > 0.5 * m.blade_width) {
+    if (known({"machine.substrate", "machine.plate_roughness", "machine.plate_grains"}) && !m.substrate.empty() &&
+        m.has_textured_plate()) {
+      report(m.plate_roughness > 0 ? "machine.plate_roughness" : "machine.plate_grains",
+             "is given beside machine.substrate (one plate only) leave one out");
+    }
+    if (known({"machine.recoater", "machine.edge_radius", "machine.blade_width"}) &&
+        m.recoater != RecoaterKind::roller && m.edge_radius > 0.5 * m.blade_width) {
       report("machine.edge_radius", "= {} (must be at most half of machine.blade_width = {})", length(m.edge_radius),
              length(m.blade_width));
     }

@@ -116,8 +116,10 @@ std::vector<CaseKey> machine_rows() {
        "Step by which the plate goes down before each layer."},
       {"machine", "recoating_speed", at<machine, &M::recoating_speed>, D::speed, {1e-3, 1}, Need::always, "",
        "Speed of the blade."},
+      {"machine", "dosing", choice<machine, &M::dosing>({"feed", "rain"}), D::none, {}, Need::never, "\"rain\"",
+       "How layer 2, 3, ... gets its powder: a piston lifts the accumulation zone's floor (`feed`), or new grains rain onto it (`rain`)."},
       {"machine", "dose_factor", at<machine, &M::dose_factor>, D::none, {0, 20}, Need::never, "1.2",
-       "Grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %."},
+       "Powder for layer 2, 3, ...: `rain`: new grains, as a share of a nominal layer packed to 60 %; `feed`: volume that the piston lifts above the platforms, as a share of the nominal layer's."},
       {"machine", "accumulation_length", at<machine, &M::accumulation_length>,
        D::length, {5e-5, 0.02}, Need::always, "",
        "Length of the zone that holds the feed, along the recoating direction."},
@@ -129,17 +131,47 @@ std::vector<CaseKey> machine_rows() {
        "Length of the zone that receives the layer."},
       {"machine", "width", at<machine, &M::width>, D::length, {2e-5, 0.02}, Need::always, "",
        "Period across the recoating direction: what leaves on one side enters on the other."},
-      {"machine", "blade_width", at<machine, &M::blade_width>, D::length, {5e-6, 0.01}, Need::always, "",
+      {"machine", "recoater", choice<machine, &M::recoater>({"blade", "roller", "compliant_blade"}),
+       D::none, {}, Need::never, "\"blade\"",
+       "What spreads: a rigid blade, a rigid roller, or a blade that yields upwards on a spring."},
+      {"machine", "blade_width", at<machine, &M::blade_width>, D::length, {5e-6, 0.01}, Need::with_blade, "",
        "Extent of the blade along the recoating direction."},
-      {"machine", "edge_radius", at<machine, &M::edge_radius>, D::length, {1e-7, 5e-3}, Need::always, "",
-       "Radius of the blade's rounded lower edges."},
+      {"machine", "edge_radius", at<machine, &M::edge_radius>, D::length, {1e-7, 5e-3}, Need::with_blade, "",
+       "Radius of the blade's rounded lower edges; of a super-elliptic edge the half axis."},
+      {"machine", "edge_exponent", at<machine, &M::edge_exponent>, D::none, {2, 50}, Need::never, "2",
+       "Exponent of the blade's super-elliptic edges; 2: round, larger: sharper."},
       {"machine", "blade_clearance", at<machine, &M::blade_clearance>, D::length, {0, 1e-3}, Need::never, "0",
-       "Height of the blade above the platforms; it adds to the layer thickness."},
+       "Height of the recoater above the platforms; it adds to the layer thickness."},
+      {"machine", "blade_friction", at<machine, &M::blade_friction>,
+       D::none, {0, 5}, Need::never, "", "Coulomb friction between grains and recoater, if not that of the walls."},
+      {"machine", "blade_stiffness", at<machine, &M::blade_stiffness>, D::pressure, {1, 1e9}, Need::never, "\"100 kPa\"",
+       "Stiffness of a blade that yields against lifting, for each metre of its width (N/m a metre)."},
+      {"machine", "blade_mass", at<machine, &M::blade_mass>, D::linear_density, {1e-4, 100}, Need::never, "\"0.06 kg/m\"",
+       "Mass that a yielding blade moves, for each metre of its width."},
+      {"machine", "blade_damping", at<machine, &M::blade_damping>, D::none, {0, 10}, Need::never, "0.3",
+       "Damping of a blade that yields, as a share of the critical one."},
+      {"machine", "roller_diameter", at<machine, &M::roller_diameter>, D::length, {5e-5, 0.1}, Need::never, "\"1 mm\"",
+       "Diameter of the roller."},
+      {"machine", "roller_spin", at<machine, &M::roller_spin>, D::none, {-20, 20}, Need::never, "1",
+       "Speed of the roller's surface over the recoating speed; 1: counter-rotating, 0: does not turn, -1: rolls without slipping."},
       {"machine", "blade_collision", choice<machine, &M::blade_collision>({"stop", "report"}),
        D::none, {}, Need::never, "\"stop\"",
        "What happens when raised solid is in the blade's way."},
+      {"machine", "platform_edge_radius", at<machine, &M::platform_edge_radius>,
+       D::length, {1e-7, 1e-3}, Need::never, "\"20 um\"",
+       "Radius of the platforms' edges towards the two zones."},
+      {"machine", "end_wall", choice<machine, &M::end_wall>({"flush", "open", "high"}),
+       D::none, {}, Need::never, "\"flush\"",
+       "End of the deposition zone: a platform as high as the others, onto which the surplus is swept (`flush`); none, grains fall off there (`open`); a wall before which the recoater stops (`high`)."},
+      {"machine", "plate_roughness", at<machine, &M::plate_roughness>, D::length, {0, 1e-4}, Need::never, "0",
+       "Rms height of a rough plate before layer 1 (Gaussian random heights with their mean 3 rms above the plate's level); 0: flat, or `substrate`."},
+      {"machine", "plate_correlation_length", at<machine, &M::plate_correlation_length>,
+       D::length, {1e-6, 1e-2}, Need::never, "\"40 um\"",
+       "Distance over which the correlation of the rough plate's heights falls to 1/e."},
+      {"machine", "plate_grains", at<machine, &M::plate_grains>, D::none, {0, 0.5}, Need::never, "0",
+       "Share of the plate that is covered by grains of the powder, frozen to it with half of their volume sunk in, before layer 1."},
       {"machine", "substrate", at<machine, &M::substrate>, D::none, {}, Need::never, "\"\"",
-       "STL file (metres) of metal that is on the plate before layer 1: x and y of the machine, z from the plate's top."},
+       "STL or PLY file (metres) of metal that is on the plate before layer 1: x and y of the machine, z from the plate's top."},
       {"machine", "frozen_zone", at<machine, &M::frozen_zone>, D::length, {0, 0.1}, Need::never, "",
        "[from, to] along x: freeze this part of each layer and mesh its surface, instead of a laser."},
   };
@@ -260,10 +292,18 @@ std::vector<CaseKey> material_rows() {
 // clang-format on
 
 /// The effects that the stages carry. Each gives its largest strength: beyond it the model would lose its meaning.
+struct EffectParameter {
+  std::string name;
+  Dimension dimension;
+  Range range;
+  std::string fallback, sentence;
+};
+
 struct Effect {
   std::string name, enabled;
   double largest_strength;
   std::string sentence;
+  std::vector<EffectParameter> parameters = {};
 };
 
 std::vector<Effect> const& effects() {
@@ -272,6 +312,16 @@ std::vector<Effect> const& effects() {
       {"variable_conductivity", "true", 1, "Conductivity over temperature; off: its value at the solidus."},
       {"evaporation", "false", 10, "Heat carried off by metal vapour (Hertz-Knudsen)."},
       {"surface_losses", "false", 100, "Radiation and convection from metal that faces gas."},
+      {"blade_vibration", "false", 10,
+       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. Manuf. 2021, 102248).",
+       {{"amplitude", D::length, {0, 1e-4}, "\"2 um\"", "Amplitude of the recoater's vibration."},
+        {"frequency", D::frequency, {1, 1e5}, "\"500 Hz\"", "Frequency of the recoater's vibration."}}},
+      {"blade_compliance", "false", 100,
+       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides the stiffness (Penny et al., arXiv 2209.04320)."},
+      {"fines", "false", 10,
+       "Grains finer than the size distribution, mixed in by mass (sieving and laser sizing cut them off).",
+       {{"mass_fraction", D::none, {0, 0.5}, "0.02", "Share of the powder's mass that is fines."},
+        {"diameter", D::length, {1e-6, 5e-5}, "\"8 um\"", "Diameter of the fines."}}},
   };
   return rows;
 }
@@ -286,6 +336,12 @@ std::vector<CaseKey> effect_rows() {
     Range const range{0, effect.largest_strength};
     rows.push_back(
         {table, "strength", strength, D::none, range, Need::never, "1", "Factor on the effect; 0: as if off."});
+    for (EffectParameter const& p : effect.parameters) {
+      auto const value = [name = effect.name, key = p.name](Case& into) -> double& {
+        return into.effects[name].parameters[key];
+      };
+      rows.push_back({table, p.name, value, p.dimension, p.range, Need::never, p.fallback, p.sentence});
+    }
   }
   return rows;
 }
@@ -315,6 +371,8 @@ bool is_needed(CaseKey const& row, Case const& c) {
       return c.contact.cohesion == Cohesion::sjkr || c.contact.cohesion == Cohesion::sjkr2;
     case Need::with_surface_energy:
       return c.contact.cohesion == Cohesion::jkr || c.contact.cohesion == Cohesion::dmt;
+    case Need::with_blade:
+      return c.machine.recoater != RecoaterKind::roller;
     case Need::never:
       return false;
   }
@@ -367,6 +425,17 @@ std::string preset_value(std::string const& preset, std::string const& table, st
       {"thesis", "contact", "rolling_friction", "0.15"},
       {"thesis", "contact", "cohesion_energy_density", "\"90000 J/m3\""},
       {"thesis", "material.IN718", "density", "\"9187 kg/m3\""},
+      {"thesis", "powder", "particles", "4500"},
+      // Thesis Table 5; it leaves open the depth of the accumulation zone, edges, friction of the blade, end wall.
+      {"thesis", "machine", "layer_thickness", "\"100 um\""},
+      {"thesis", "machine", "recoating_speed", "\"100 mm/s\""},
+      {"thesis", "machine", "accumulation_length", "\"1250 um\""},
+      {"thesis", "machine", "accumulation_depth", "\"300 um\""},
+      {"thesis", "machine", "gap_length", "\"150 um\""},
+      {"thesis", "machine", "deposition_length", "\"1250 um\""},
+      {"thesis", "machine", "width", "\"175 um\""},
+      {"thesis", "machine", "blade_width", "\"250 um\""},
+      {"thesis", "machine", "edge_radius", "\"5 um\""},
   };
   for (Value const& row : values) {
     if (row.preset == preset && row.table == table && row.key == key) return std::string(row.value);

@@ -85,6 +85,10 @@ constexpr auto units = std::to_array<Unit>({
     {"J/g", D::specific_energy, 1e3L},
     {"kg/mol", D::molar_mass, 1},
     {"g/mol", D::molar_mass, 1e-3L},
+    {"Hz", D::frequency, 1},
+    {"kHz", D::frequency, 1e3L},
+    {"kg/m", D::linear_density, 1},
+    {"g/m", D::linear_density, 1e-3L},
 });
 
 std::string without_blanks(std::string_view text) {
@@ -144,6 +148,10 @@ std::string_view name(Dimension dimension) {
       return "an energy per mass";
     case D::molar_mass:
       return "a molar mass";
+    case D::frequency:
+      return "a frequency";
+    case D::linear_density:
+      return "a mass per length";
   }
   return "";
 }

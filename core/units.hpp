@@ -21,7 +21,9 @@ enum class Dimension {
   conductivity,
   specific_heat,
   specific_energy,
-  molar_mass
+  molar_mass,
+  frequency,
+  linear_density
 };
 
 std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty for none

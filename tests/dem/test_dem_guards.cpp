@@ -26,7 +26,7 @@ std::string message_of(auto const& action) {
 Simulation falling_feed(Case const& c) {
   PowderBed bed;
   add_cloud(bed, c, c.powder.particles, 0);
-  Simulation simulation(motion_of(c), machine_rig(c, plate_of(c), bed, Tools::blade_and_gate), alone());
+  Simulation simulation(motion_of(c), machine_rig(c, plate_of(c), bed, Tools::parked_and_gate), alone());
   simulation.scatter(bed);
   return simulation;
 }
