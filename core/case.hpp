@@ -26,8 +26,8 @@ enum class EndWall { flush, open, high };
 enum class BladeCollision { stop, report };
 enum class SpotDefinition { one_over_e2, d4sigma, fwhm };
 enum class ScanKind { track, hatch };
-/// What becomes of a spread layer; the verb decides.
-enum class Process { melting, spreading };
+/// What becomes of a spread layer, or that there is none; the verb decides.
+enum class Process { melting, spreading, calibrating };
 enum class HeatSolver { explicit_steps, implicit_steps, automatic };
 
 struct PowderSettings {
@@ -139,6 +139,27 @@ struct RunSettings {
   bool unsafe_time_step = false;
 };
 
+/// Angle of repose and slipping angle (dem/repose_pile.hpp, dem/tilting_plate.hpp), and the search for the friction and
+/// cohesion that give both.
+struct CalibrateSettings {
+  double base_diameter = 0;         ///< of the round base under the pile [m]
+  std::int64_t pile_particles = 0;  ///< grains that fall on it
+  std::int64_t batches = 1;         ///< clouds that they come in
+  double cloud_width = 0;           ///< diameter of a cloud over that of the base
+  double cloud_density = 0;         ///< solid share of a cloud
+  double fall_speed = 0;            ///< of the grains of a cloud at the start [m/s]
+  double settling_time = 0;         ///< longest [s]
+  double plate_length = 0;          ///< period along x and y of the tilting plate [m]
+  std::int64_t plate_particles = 0;
+  double tilt_rate = 0;                                      ///< [rad/s]
+  double tilt_from = 0, tilt_to = 0;                         ///< the rate holds between them [rad]
+  double target_repose = 0, target_slip = 0, tolerance = 0;  ///< [rad], [rad], relative
+  bool search = false;
+  std::optional<std::array<double, 2>> friction, cohesion;  ///< bounds of the search [-], [J/m^3]
+  std::int64_t grid = 0, refinements = 0;
+  double parameter_step = 0;  ///< relative, of the sensitivities
+};
+
 /// One `[effects.NAME]` table.
 struct EffectSettings {
   bool enabled = false;
@@ -159,11 +180,13 @@ struct Case {
   ScanSettings scan;
   HeatSettings heat;
   RunSettings run;
+  CalibrateSettings calibrate;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
   Material material;  ///< the powder's, overrides applied; substrate and part are the same metal
 
   bool has_laser() const { return process == Process::melting && !machine.frozen_zone; }
   bool has_part() const { return process == Process::melting || machine.frozen_zone; }
+  bool has_machine() const { return process != Process::calibrating; }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
   /// 0 for an effect that is off (or that a case made without a file does not know).
   double effect_strength(std::string const& effect) const {

@@ -31,13 +31,15 @@ class CaseChecks {
 
   void run() const {
     powder();
-    feed();
-    piston();
     effects();
     time_step();
+    material();
+    calibrate();
+    if (!c_.has_machine()) return;
+    feed();
+    piston();
     machine();
     frozen_zone();
-    material();
     cells();
     if (!c_.has_laser()) return;
     scan();
@@ -196,6 +198,29 @@ class CaseChecks {
       report("machine.frozen_zone", "= [{}, {}] (must lie in the deposition zone, [{}, {}])", length(from), length(to),
              length(m.deposition_begin()), length(m.deposition_end()));
     }
+  }
+
+  void calibrate() const {
+    CalibrateSettings const& c = c_.calibrate;
+    auto const angle = [](double radians) { return format_quantity(radians, Dimension::angle); };
+    if (known({"calibrate.tilt_from", "calibrate.tilt_to"}) && c.tilt_from >= c.tilt_to)
+      report("calibrate.tilt_from", "= {} (must be below calibrate.tilt_to = {})", angle(c.tilt_from),
+             angle(c.tilt_to));
+    if (known({"calibrate.friction"}) && c.friction && !(c.friction->at(0) < c.friction->at(1)))
+      report("calibrate.friction", "= [{:g}, {:g}] (must ascend)", c.friction->at(0), c.friction->at(1));
+    if (known({"calibrate.cohesion"}) && c.cohesion && !(c.cohesion->at(0) < c.cohesion->at(1)))
+      report("calibrate.cohesion", "= [{:g}, {:g}] J/m3 (must ascend)", c.cohesion->at(0), c.cohesion->at(1));
+    bool const has_energy_density = c_.contact.cohesion == Cohesion::sjkr || c_.contact.cohesion == Cohesion::sjkr2;
+    if (known({"calibrate.search", "contact.cohesion"}) && c.search && !has_energy_density)
+      report("calibrate.search", "= true (it varies the cohesion energy density) set contact.cohesion = \"sjkr2\"");
+    if (!distribution_known()) return;
+    if (known({"calibrate.base_diameter"}) && c.base_diameter < 10 * largest())
+      report("calibrate.base_diameter", "= {} (a pile needs at least 10 of the largest grains, {}, across) widen it",
+             length(c.base_diameter), length(10 * largest()));
+    if (known({"calibrate.plate_length"}) && c.plate_length <= 3 * largest())
+      report("calibrate.plate_length",
+             "= {} (must be above 3 largest grains, {}, or a grain meets its own periodic image) lengthen it",
+             length(c.plate_length), length(3 * largest()));
   }
 
   void material() const {

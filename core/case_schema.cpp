@@ -259,6 +259,57 @@ std::vector<CaseKey> heat_and_run_rows() {
   };
 }
 
+std::vector<CaseKey> calibrate_rows() {
+  using K = CalibrateSettings;
+  constexpr auto calibrate = &Case::calibrate;
+  constexpr double right_angle = std::numbers::pi / 2;
+  return {
+      {"calibrate", "base_diameter", at<calibrate, &K::base_diameter>, D::length, {1e-4, 0.05}, Need::never,
+       "\"800 um\"", "Diameter of the round base that the pile stands on."},
+      {"calibrate", "pile_particles", at<calibrate, &K::pile_particles>, D::none, {50, 1e8}, Need::never, "2600",
+       "Grains that fall on the base; what rolls over its edge is gone."},
+      {"calibrate", "batches", at<calibrate, &K::batches>, D::none, {1, 1000}, Need::never, "1",
+       "Clouds that the grains of the pile come in, each when the one before has come to rest; 1: the cloud method."},
+      {"calibrate", "cloud_width", at<calibrate, &K::cloud_width>, D::none, {0.05, 1}, Need::never, "0.85",
+       "Diameter of a cloud over that of the base; small with many batches: pouring from a funnel."},
+      {"calibrate", "cloud_density", at<calibrate, &K::cloud_density>, D::none, {0.005, 0.35}, Need::never, "0.16",
+       "Solid share of a cloud; the looser, the higher it falls from."},
+      {"calibrate", "fall_speed", at<calibrate, &K::fall_speed>, D::speed, {0, 5}, Need::never, "\"50 mm/s\"",
+       "Downward speed of the grains of a cloud at the start."},
+      {"calibrate", "settling_time", at<calibrate, &K::settling_time>, D::time, {1e-4, 10}, Need::never, "\"15 ms\"",
+       "Longest time that pile and layer are given to come to rest."},
+      {"calibrate", "plate_length", at<calibrate, &K::plate_length>, D::length, {1e-4, 0.02}, Need::never,
+       "\"450 um\"", "Period, along and across, of the plate that is tilted."},
+      {"calibrate", "plate_particles", at<calibrate, &K::plate_particles>, D::none, {20, 1e8}, Need::never, "800",
+       "Grains on the plate that is tilted."},
+      {"calibrate", "tilt_rate", at<calibrate, &K::tilt_rate>, D::angular_speed, {0.1, 1000}, Need::never,
+       "\"1.4 deg/ms\"", "Rate at which the plate is tilted; the faster, the later the layer is seen to slip."},
+      {"calibrate", "tilt_from", at<calibrate, &K::tilt_from>, D::angle, {0, right_angle}, Need::never, "\"20 deg\"",
+       "Tilt that is reached 15 times faster."},
+      {"calibrate", "tilt_to", at<calibrate, &K::tilt_to>, D::angle, {0, 2 * right_angle}, Need::never, "\"70 deg\"",
+       "Tilt at which the test ends when the layer has not slipped."},
+      {"calibrate", "target_repose", at<calibrate, &K::target_repose>, D::angle, {0, right_angle, open}, Need::never,
+       "\"28.7 deg\"", "Measured angle of repose."},
+      {"calibrate", "target_slip", at<calibrate, &K::target_slip>, D::angle, {0, right_angle, open}, Need::never,
+       "\"41.6 deg\"", "Measured slipping angle."},
+      {"calibrate", "tolerance", at<calibrate, &K::tolerance>, D::none, {1e-4, 1}, Need::never, "0.04",
+       "Relative error of either angle at which a target counts as reached."},
+      {"calibrate", "search", at<calibrate, &K::search>, D::none, {}, Need::never, "false",
+       "Whether friction and cohesion that give both targets are looked for. Friction and cohesion at walls follow in "
+       "the proportion that the case has."},
+      {"calibrate", "friction", at<calibrate, &K::friction>, D::none, {0, 5}, Need::never, "[0.3, 1.1]",
+       "[from, to]: bounds of the friction between grains in the search."},
+      {"calibrate", "cohesion", at<calibrate, &K::cohesion>, D::energy_density, {0, 1e9}, Need::never,
+       "[\"20 kJ/m3\", \"160 kJ/m3\"]", "[from, to]: bounds of the cohesion energy density in the search."},
+      {"calibrate", "grid", at<calibrate, &K::grid>, D::none, {3, 50}, Need::never, "3",
+       "Values of friction, and of cohesion, on the map that the search begins with."},
+      {"calibrate", "refinements", at<calibrate, &K::refinements>, D::none, {0, 50}, Need::never, "4",
+       "Further points at most, each where the fitted surfaces come closest to both targets."},
+      {"calibrate", "parameter_step", at<calibrate, &K::parameter_step>, D::none, {0.01, 0.9}, Need::never, "0.25",
+       "Relative change of each parameter, up and down, for the sensitivities of both angles."},
+  };
+}
+
 std::vector<CaseKey> material_rows() {
   using M = Material;
   constexpr auto m = &Case::material;
@@ -351,7 +402,7 @@ std::vector<CaseKey> effect_rows() {
 std::vector<CaseKey> const& case_schema() {
   static std::vector<CaseKey> const schema = [] {
     std::vector<CaseKey> rows;
-    for (auto const part : {powder_rows, machine_rows, laser_rows, heat_and_run_rows, effect_rows, material_rows}) {
+    for (auto const part : {powder_rows, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows, effect_rows, material_rows}) {
       for (CaseKey& row : part()) rows.push_back(std::move(row));
     }
     return rows;
@@ -360,6 +411,8 @@ std::vector<CaseKey> const& case_schema() {
 }
 
 bool is_needed(CaseKey const& row, Case const& c) {
+  bool const of_machine = row.table == "machine" || row.table == "heat" || name_of(row) == "powder.particles";
+  if (of_machine && !c.has_machine()) return false;
   switch (row.need) {
     case Need::always:
       return true;

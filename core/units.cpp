@@ -68,6 +68,9 @@ constexpr auto units = std::to_array<Unit>({
     {"degC", D::temperature, 1, 273.15L},
     {"rad", D::angle, 1},
     {"deg", D::angle, pi / 180},
+    {"rad/s", D::angular_speed, 1},
+    {"deg/s", D::angular_speed, pi / 180},
+    {"deg/ms", D::angular_speed, pi / 0.18L},
     {"W/(m K)", D::conductivity, 1},
     {"W/(mK)", D::conductivity, 1},
     {"W/mK", D::conductivity, 1},
@@ -140,6 +143,8 @@ std::string_view name(Dimension dimension) {
       return "a temperature";
     case D::angle:
       return "an angle";
+    case D::angular_speed:
+      return "an angular speed";
     case D::conductivity:
       return "a thermal conductivity";
     case D::specific_heat:

@@ -18,6 +18,7 @@ enum class Dimension {
   power,
   temperature,
   angle,
+  angular_speed,
   conductivity,
   specific_heat,
   specific_energy,
