@@ -8,7 +8,7 @@ packages=(g++ cmake ninja-build pkg-config
   libembree-dev libtbb-dev libcgal-dev libeigen3-dev libboost-dev
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libpng-dev librandom123-dev libxxhash-dev)
 if [ "${1:-}" = test ]; then
-  packages+=(libgtest-dev libgmock-dev python3-h5py python3-numpy python3-vtk9)
+  packages+=(liggghts lammps libgtest-dev libgmock-dev python3-h5py python3-numpy python3-vtk9)
 fi
 
 missing=()

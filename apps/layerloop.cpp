@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   apps::add_spread(program, action);
   apps::add_bench(program, action);
   apps::add_check(program, action);
+  apps::add_calibrate(program, action);
   apps::add_doctor(program, action);
   try {
     program.parse(argc, argv);

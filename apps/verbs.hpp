@@ -25,6 +25,7 @@ void add_run(CLI::App& program, Action& chosen);
 void add_spread(CLI::App& program, Action& chosen);
 void add_bench(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);
+void add_calibrate(CLI::App& program, Action& chosen);
 void add_doctor(CLI::App& program, Action& chosen);
 
 void add_case_options(CLI::App& verb, CaseOptions& options);

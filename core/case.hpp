@@ -20,11 +20,14 @@ enum class RollingModel { cdt, epsd2 };
 enum class SlidingSpring { rescaled, kept };
 enum class WallCohesionArea { liggghts, eq6 };
 enum class CoulombOn { repulsive, total };
+enum class RecoaterKind { blade, roller, compliant_blade };
+enum class Dosing { feed, rain };
+enum class EndWall { flush, open, high };
 enum class BladeCollision { stop, report };
 enum class SpotDefinition { one_over_e2, d4sigma, fwhm };
 enum class ScanKind { track, hatch };
-/// What becomes of a spread layer; the verb decides.
-enum class Process { melting, spreading };
+/// What becomes of a spread layer, or that there is none; the verb decides.
+enum class Process { melting, spreading, calibrating };
 enum class HeatSolver { explicit_steps, implicit_steps, automatic };
 
 struct PowderSettings {
@@ -63,15 +66,30 @@ struct ContactSettings {
 struct MachineSettings {
   double layer_thickness = 0;
   double recoating_speed = 0;
-  double dose_factor = 0;  ///< grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %
+  Dosing dosing = Dosing::rain;
+  double dose_factor = 0;  ///< of layer 2, 3, ...; see `dosing`
   double accumulation_length = 0, accumulation_depth = 0, gap_length = 0, deposition_length = 0;
   double width = 0;  ///< periodic, across the blade
-  double blade_width = 0, edge_radius = 0, blade_clearance = 0;
+  RecoaterKind recoater = RecoaterKind::blade;
+  double blade_width = 0, edge_radius = 0, edge_exponent = 2, blade_clearance = 0;
+  std::optional<double> blade_friction;  ///< of any recoater; else that of the walls
+  double blade_stiffness = 0;  ///< for each metre of width [N/m^2]
+  double blade_mass = 0;       ///< for each metre of width [kg/m]
+  double blade_damping = 0;    ///< share of critical damping
+  double roller_diameter = 0;
+  double roller_spin = 0;           ///< surface speed over recoating speed; positive: counter-rotating
+  double platform_edge_radius = 20e-6;  ///< of the platforms' edges [m]
+  EndWall end_wall = EndWall::flush;
   BladeCollision blade_collision = BladeCollision::stop;
-  std::string substrate;  ///< STL of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
+  std::string substrate;  ///< STL or PLY of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
+  double plate_roughness = 0, plate_correlation_length = 0;  ///< rms height and length over which it persists [m]
+  double plate_grains = 0;                                   ///< share of the plate that half-sunk grains cover
   std::optional<std::array<double, 2>>
       frozen_zone;  ///< x from, to: freeze and mesh this part of the bed instead of the laser
 
+  /// The piston of the accumulation zone lifts this much before each layer, with Dosing::feed [m].
+  double feed_rise() const { return dose_factor * layer_thickness * deposition_length / accumulation_length; }
+  bool has_textured_plate() const { return plate_roughness > 0 || plate_grains > 0; }
   double deposition_begin() const { return accumulation_length + gap_length; }
   double deposition_end() const { return deposition_begin() + deposition_length; }
 };
@@ -121,10 +139,32 @@ struct RunSettings {
   bool unsafe_time_step = false;
 };
 
+/// Angle of repose and slipping angle (dem/repose_pile.hpp, dem/tilting_plate.hpp), and the search for the friction and
+/// cohesion that give both.
+struct CalibrateSettings {
+  double base_diameter = 0;         ///< of the round base under the pile [m]
+  std::int64_t pile_particles = 0;  ///< grains that fall on it
+  std::int64_t batches = 1;         ///< clouds that they come in
+  double cloud_width = 0;           ///< diameter of a cloud over that of the base
+  double cloud_density = 0;         ///< solid share of a cloud
+  double fall_speed = 0;            ///< of the grains of a cloud at the start [m/s]
+  double settling_time = 0;         ///< longest [s]
+  double plate_length = 0;          ///< period along x and y of the tilting plate [m]
+  std::int64_t plate_particles = 0;
+  double tilt_rate = 0;                                      ///< [rad/s]
+  double tilt_from = 0, tilt_to = 0;                         ///< the rate holds between them [rad]
+  double target_repose = 0, target_slip = 0, tolerance = 0;  ///< [rad], [rad], relative
+  bool search = false;
+  std::optional<std::array<double, 2>> friction, cohesion;  ///< bounds of the search [-], [J/m^3]
+  std::int64_t grid = 0, refinements = 0;
+  double parameter_step = 0;  ///< relative, of the sensitivities
+};
+
 /// One `[effects.NAME]` table.
 struct EffectSettings {
   bool enabled = false;
   double strength = 1;
+  std::map<std::string, double> parameters;  ///< SI
 };
 
 struct Case {
@@ -140,12 +180,19 @@ struct Case {
   ScanSettings scan;
   HeatSettings heat;
   RunSettings run;
+  CalibrateSettings calibrate;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
   Material material;  ///< the powder's, overrides applied; substrate and part are the same metal
 
   bool has_laser() const { return process == Process::melting && !machine.frozen_zone; }
   bool has_part() const { return process == Process::melting || machine.frozen_zone; }
+  bool has_machine() const { return process != Process::calibrating; }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
+  /// 0 for an effect that is off (or that a case made without a file does not know).
+  double effect_strength(std::string const& effect) const {
+    auto const found = effects.find(effect);
+    return found != effects.end() && found->second.enabled ? found->second.strength : 0.0;
+  }
 };
 
 }  // namespace layerloop

@@ -31,11 +31,15 @@ class CaseChecks {
 
   void run() const {
     powder();
-    feed();
+    effects();
     time_step();
+    material();
+    calibrate();
+    if (!c_.has_machine()) return;
+    feed();
+    piston();
     machine();
     frozen_zone();
-    material();
     cells();
     if (!c_.has_laser()) return;
     scan();
@@ -53,11 +57,49 @@ class CaseChecks {
     origin_.report(key, fmt::format("{} {}", key, fmt::format(text, std::forward<Values>(values)...)));
   }
 
-  double largest() const { return *std::max_element(c_.powder.diameters.begin(), c_.powder.diameters.end()); }
-  double smallest() const { return *std::min_element(c_.powder.diameters.begin(), c_.powder.diameters.end()); }
+  double largest() const { return std::ranges::max(fed_powder(c_).diameters); }
+  double smallest() const { return std::ranges::min(fed_powder(c_).diameters); }
   bool distribution_known() const {
-    return known({"powder.diameters", "powder.fractions"}) && !c_.powder.diameters.empty() &&
-           c_.powder.diameters.size() == c_.powder.fractions.size();
+    return known({"powder.diameters", "powder.fractions", "effects.fines.strength", "effects.fines.mass_fraction",
+                  "effects.fines.diameter"}) &&
+           !c_.powder.diameters.empty() && c_.powder.diameters.size() == c_.powder.fractions.size() &&
+           fines_share() < 1;
+  }
+
+  double fines_share() const {
+    double const strength = c_.effect_strength("fines");
+    return strength > 0 ? strength * c_.effects.at("fines").parameters.at("mass_fraction") : 0.0;
+  }
+
+  void effects() const {
+    if (known({"effects.fines.strength", "effects.fines.mass_fraction"}) && fines_share() >= 1)
+      report("effects.fines.strength", "makes {:g} of the powder's mass fines (must be below 1)", fines_share());
+    double const strength = c_.effect_strength("blade_vibration");
+    if (strength == 0 || !known({"effects.blade_vibration.strength", "effects.blade_vibration.amplitude",
+                                 "effects.blade_vibration.frequency", "machine.blade_clearance"}))
+      return;
+    double const amplitude = strength * c_.effects.at("blade_vibration").parameters.at("amplitude");
+    if (amplitude > c_.machine.blade_clearance) {
+      report("effects.blade_vibration.amplitude",
+             "= {} (the recoater would strike the platforms) raise machine.blade_clearance from {} to at least that",
+             length(amplitude), length(c_.machine.blade_clearance));
+    }
+  }
+
+  /// The piston must not come up to the platforms before the last layer.
+  void piston() const {
+    MachineSettings const& m = c_.machine;
+    if (m.dosing != Dosing::feed || !known({"machine.dosing", "machine.dose_factor", "machine.layer_thickness",
+                                            "machine.deposition_length", "machine.accumulation_length",
+                                            "machine.accumulation_depth", "run.layers"}))
+      return;
+    double const risen = static_cast<double>(c_.run.layers - 1) * m.feed_rise();
+    if (risen > m.accumulation_depth) {
+      report("machine.accumulation_depth",
+             "= {} (the piston rises by {} for each of {} layers and would stand above the platforms) deepen the zone, "
+             "or lower machine.dose_factor or run.layers",
+             length(m.accumulation_depth), length(m.feed_rise()), c_.run.layers);
+    }
   }
 
   void powder() const {
@@ -84,7 +126,7 @@ class CaseChecks {
                                          "machine.accumulation_depth", "machine.width"})) {
       return;
     }
-    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume(c_.powder);
+    double const volume = static_cast<double>(c_.powder.particles) * mean_grain_volume(fed_powder(c_));
     if (!(volume > 0)) return;
     double const solid_height = volume / (m.accumulation_length * m.width);
     double const loosest = solid_height / 0.5, densest = solid_height / 0.64;
@@ -120,7 +162,13 @@ class CaseChecks {
 
   void machine() const {
     MachineSettings const& m = c_.machine;
-    if (known({"machine.edge_radius", "machine.blade_width"}) && m.edge_radius > 0.5 * m.blade_width) {
+    if (known({"machine.substrate", "machine.plate_roughness", "machine.plate_grains"}) && !m.substrate.empty() &&
+        m.has_textured_plate()) {
+      report(m.plate_roughness > 0 ? "machine.plate_roughness" : "machine.plate_grains",
+             "is given beside machine.substrate (one plate only) leave one out");
+    }
+    if (known({"machine.recoater", "machine.edge_radius", "machine.blade_width"}) &&
+        m.recoater != RecoaterKind::roller && m.edge_radius > 0.5 * m.blade_width) {
       report("machine.edge_radius", "= {} (must be at most half of machine.blade_width = {})", length(m.edge_radius),
              length(m.blade_width));
     }
@@ -150,6 +198,29 @@ class CaseChecks {
       report("machine.frozen_zone", "= [{}, {}] (must lie in the deposition zone, [{}, {}])", length(from), length(to),
              length(m.deposition_begin()), length(m.deposition_end()));
     }
+  }
+
+  void calibrate() const {
+    CalibrateSettings const& c = c_.calibrate;
+    auto const angle = [](double radians) { return format_quantity(radians, Dimension::angle); };
+    if (known({"calibrate.tilt_from", "calibrate.tilt_to"}) && c.tilt_from >= c.tilt_to)
+      report("calibrate.tilt_from", "= {} (must be below calibrate.tilt_to = {})", angle(c.tilt_from),
+             angle(c.tilt_to));
+    if (known({"calibrate.friction"}) && c.friction && !(c.friction->at(0) < c.friction->at(1)))
+      report("calibrate.friction", "= [{:g}, {:g}] (must ascend)", c.friction->at(0), c.friction->at(1));
+    if (known({"calibrate.cohesion"}) && c.cohesion && !(c.cohesion->at(0) < c.cohesion->at(1)))
+      report("calibrate.cohesion", "= [{:g}, {:g}] J/m3 (must ascend)", c.cohesion->at(0), c.cohesion->at(1));
+    bool const has_energy_density = c_.contact.cohesion == Cohesion::sjkr || c_.contact.cohesion == Cohesion::sjkr2;
+    if (known({"calibrate.search", "contact.cohesion"}) && c.search && !has_energy_density)
+      report("calibrate.search", "= true (it varies the cohesion energy density) set contact.cohesion = \"sjkr2\"");
+    if (!distribution_known()) return;
+    if (known({"calibrate.base_diameter"}) && c.base_diameter < 10 * largest())
+      report("calibrate.base_diameter", "= {} (a pile needs at least 10 of the largest grains, {}, across) widen it",
+             length(c.base_diameter), length(10 * largest()));
+    if (known({"calibrate.plate_length"}) && c.plate_length <= 3 * largest())
+      report("calibrate.plate_length",
+             "= {} (must be above 3 largest grains, {}, or a grain meets its own periodic image) lengthen it",
+             length(c.plate_length), length(3 * largest()));
   }
 
   void material() const {

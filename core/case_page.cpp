@@ -38,6 +38,8 @@ std::string default_column(CaseKey const& row) {
       return "required with `sjkr`, `sjkr2`";
     case Need::with_surface_energy:
       return "required with `jkr`, `dmt`";
+    case Need::with_blade:
+      return "required (not with a roller)";
     case Need::never:
       return "none";
   }

@@ -116,8 +116,10 @@ std::vector<CaseKey> machine_rows() {
        "Step by which the plate goes down before each layer."},
       {"machine", "recoating_speed", at<machine, &M::recoating_speed>, D::speed, {1e-3, 1}, Need::always, "",
        "Speed of the blade."},
+      {"machine", "dosing", choice<machine, &M::dosing>({"feed", "rain"}), D::none, {}, Need::never, "\"rain\"",
+       "How layer 2, 3, ... gets its powder: a piston lifts the accumulation zone's floor (`feed`), or new grains rain onto it (`rain`)."},
       {"machine", "dose_factor", at<machine, &M::dose_factor>, D::none, {0, 20}, Need::never, "1.2",
-       "Grains fed before layer 2, 3, ...: share of a nominal layer packed to 60 %."},
+       "Powder for layer 2, 3, ...: `rain`: new grains, as a share of a nominal layer packed to 60 %; `feed`: volume that the piston lifts above the platforms, as a share of the nominal layer's."},
       {"machine", "accumulation_length", at<machine, &M::accumulation_length>,
        D::length, {5e-5, 0.02}, Need::always, "",
        "Length of the zone that holds the feed, along the recoating direction."},
@@ -129,17 +131,47 @@ std::vector<CaseKey> machine_rows() {
        "Length of the zone that receives the layer."},
       {"machine", "width", at<machine, &M::width>, D::length, {2e-5, 0.02}, Need::always, "",
        "Period across the recoating direction: what leaves on one side enters on the other."},
-      {"machine", "blade_width", at<machine, &M::blade_width>, D::length, {5e-6, 0.01}, Need::always, "",
+      {"machine", "recoater", choice<machine, &M::recoater>({"blade", "roller", "compliant_blade"}),
+       D::none, {}, Need::never, "\"blade\"",
+       "What spreads: a rigid blade, a rigid roller, or a blade that yields upwards on a spring."},
+      {"machine", "blade_width", at<machine, &M::blade_width>, D::length, {5e-6, 0.01}, Need::with_blade, "",
        "Extent of the blade along the recoating direction."},
-      {"machine", "edge_radius", at<machine, &M::edge_radius>, D::length, {1e-7, 5e-3}, Need::always, "",
-       "Radius of the blade's rounded lower edges."},
+      {"machine", "edge_radius", at<machine, &M::edge_radius>, D::length, {1e-7, 5e-3}, Need::with_blade, "",
+       "Radius of the blade's rounded lower edges; of a super-elliptic edge the half axis."},
+      {"machine", "edge_exponent", at<machine, &M::edge_exponent>, D::none, {2, 50}, Need::never, "2",
+       "Exponent of the blade's super-elliptic edges; 2: round, larger: sharper."},
       {"machine", "blade_clearance", at<machine, &M::blade_clearance>, D::length, {0, 1e-3}, Need::never, "0",
-       "Height of the blade above the platforms; it adds to the layer thickness."},
+       "Height of the recoater above the platforms; it adds to the layer thickness."},
+      {"machine", "blade_friction", at<machine, &M::blade_friction>,
+       D::none, {0, 5}, Need::never, "", "Coulomb friction between grains and recoater, if not that of the walls."},
+      {"machine", "blade_stiffness", at<machine, &M::blade_stiffness>, D::pressure, {1, 1e9}, Need::never, "\"100 kPa\"",
+       "Stiffness of a blade that yields against lifting, for each metre of its width (N/m a metre)."},
+      {"machine", "blade_mass", at<machine, &M::blade_mass>, D::linear_density, {1e-4, 100}, Need::never, "\"0.06 kg/m\"",
+       "Mass that a yielding blade moves, for each metre of its width."},
+      {"machine", "blade_damping", at<machine, &M::blade_damping>, D::none, {0, 10}, Need::never, "0.3",
+       "Damping of a blade that yields, as a share of the critical one."},
+      {"machine", "roller_diameter", at<machine, &M::roller_diameter>, D::length, {5e-5, 0.1}, Need::never, "\"1 mm\"",
+       "Diameter of the roller."},
+      {"machine", "roller_spin", at<machine, &M::roller_spin>, D::none, {-20, 20}, Need::never, "1",
+       "Speed of the roller's surface over the recoating speed; 1: counter-rotating, 0: does not turn, -1: rolls without slipping."},
       {"machine", "blade_collision", choice<machine, &M::blade_collision>({"stop", "report"}),
        D::none, {}, Need::never, "\"stop\"",
        "What happens when raised solid is in the blade's way."},
+      {"machine", "platform_edge_radius", at<machine, &M::platform_edge_radius>,
+       D::length, {1e-7, 1e-3}, Need::never, "\"20 um\"",
+       "Radius of the platforms' edges towards the two zones."},
+      {"machine", "end_wall", choice<machine, &M::end_wall>({"flush", "open", "high"}),
+       D::none, {}, Need::never, "\"flush\"",
+       "End of the deposition zone: a platform as high as the others, onto which the surplus is swept (`flush`); none, grains fall off there (`open`); a wall before which the recoater stops (`high`)."},
+      {"machine", "plate_roughness", at<machine, &M::plate_roughness>, D::length, {0, 1e-4}, Need::never, "0",
+       "Rms height of a rough plate before layer 1 (Gaussian random heights with their mean 3 rms above the plate's level); 0: flat, or `substrate`."},
+      {"machine", "plate_correlation_length", at<machine, &M::plate_correlation_length>,
+       D::length, {1e-6, 1e-2}, Need::never, "\"40 um\"",
+       "Distance over which the correlation of the rough plate's heights falls to 1/e."},
+      {"machine", "plate_grains", at<machine, &M::plate_grains>, D::none, {0, 0.5}, Need::never, "0",
+       "Share of the plate that is covered by grains of the powder, frozen to it with half of their volume sunk in, before layer 1."},
       {"machine", "substrate", at<machine, &M::substrate>, D::none, {}, Need::never, "\"\"",
-       "STL file (metres) of metal that is on the plate before layer 1: x and y of the machine, z from the plate's top."},
+       "STL or PLY file (metres) of metal that is on the plate before layer 1: x and y of the machine, z from the plate's top."},
       {"machine", "frozen_zone", at<machine, &M::frozen_zone>, D::length, {0, 0.1}, Need::never, "",
        "[from, to] along x: freeze this part of each layer and mesh its surface, instead of a laser."},
   };
@@ -227,6 +259,57 @@ std::vector<CaseKey> heat_and_run_rows() {
   };
 }
 
+std::vector<CaseKey> calibrate_rows() {
+  using K = CalibrateSettings;
+  constexpr auto calibrate = &Case::calibrate;
+  constexpr double right_angle = std::numbers::pi / 2;
+  return {
+      {"calibrate", "base_diameter", at<calibrate, &K::base_diameter>, D::length, {1e-4, 0.05}, Need::never,
+       "\"800 um\"", "Diameter of the round base that the pile stands on."},
+      {"calibrate", "pile_particles", at<calibrate, &K::pile_particles>, D::none, {50, 1e8}, Need::never, "2600",
+       "Grains that fall on the base; what rolls over its edge is gone."},
+      {"calibrate", "batches", at<calibrate, &K::batches>, D::none, {1, 1000}, Need::never, "1",
+       "Clouds that the grains of the pile come in, each when the one before has come to rest; 1: the cloud method."},
+      {"calibrate", "cloud_width", at<calibrate, &K::cloud_width>, D::none, {0.05, 1}, Need::never, "0.85",
+       "Diameter of a cloud over that of the base; small with many batches: pouring from a funnel."},
+      {"calibrate", "cloud_density", at<calibrate, &K::cloud_density>, D::none, {0.005, 0.35}, Need::never, "0.16",
+       "Solid share of a cloud; the looser, the higher it falls from."},
+      {"calibrate", "fall_speed", at<calibrate, &K::fall_speed>, D::speed, {0, 5}, Need::never, "\"50 mm/s\"",
+       "Downward speed of the grains of a cloud at the start."},
+      {"calibrate", "settling_time", at<calibrate, &K::settling_time>, D::time, {1e-4, 10}, Need::never, "\"15 ms\"",
+       "Longest time that pile and layer are given to come to rest."},
+      {"calibrate", "plate_length", at<calibrate, &K::plate_length>, D::length, {1e-4, 0.02}, Need::never,
+       "\"450 um\"", "Period, along and across, of the plate that is tilted."},
+      {"calibrate", "plate_particles", at<calibrate, &K::plate_particles>, D::none, {20, 1e8}, Need::never, "800",
+       "Grains on the plate that is tilted."},
+      {"calibrate", "tilt_rate", at<calibrate, &K::tilt_rate>, D::angular_speed, {0.1, 1000}, Need::never,
+       "\"1.4 deg/ms\"", "Rate at which the plate is tilted; the faster, the later the layer is seen to slip."},
+      {"calibrate", "tilt_from", at<calibrate, &K::tilt_from>, D::angle, {0, right_angle}, Need::never, "\"20 deg\"",
+       "Tilt that is reached 15 times faster."},
+      {"calibrate", "tilt_to", at<calibrate, &K::tilt_to>, D::angle, {0, 2 * right_angle}, Need::never, "\"70 deg\"",
+       "Tilt at which the test ends when the layer has not slipped."},
+      {"calibrate", "target_repose", at<calibrate, &K::target_repose>, D::angle, {0, right_angle, open}, Need::never,
+       "\"28.7 deg\"", "Measured angle of repose."},
+      {"calibrate", "target_slip", at<calibrate, &K::target_slip>, D::angle, {0, right_angle, open}, Need::never,
+       "\"41.6 deg\"", "Measured slipping angle."},
+      {"calibrate", "tolerance", at<calibrate, &K::tolerance>, D::none, {1e-4, 1}, Need::never, "0.04",
+       "Relative error of either angle at which a target counts as reached."},
+      {"calibrate", "search", at<calibrate, &K::search>, D::none, {}, Need::never, "false",
+       "Whether friction and cohesion that give both targets are looked for. Friction and cohesion at walls follow in "
+       "the proportion that the case has."},
+      {"calibrate", "friction", at<calibrate, &K::friction>, D::none, {0, 5}, Need::never, "[0.3, 1.1]",
+       "[from, to]: bounds of the friction between grains in the search."},
+      {"calibrate", "cohesion", at<calibrate, &K::cohesion>, D::energy_density, {0, 1e9}, Need::never,
+       "[\"20 kJ/m3\", \"160 kJ/m3\"]", "[from, to]: bounds of the cohesion energy density in the search."},
+      {"calibrate", "grid", at<calibrate, &K::grid>, D::none, {3, 50}, Need::never, "3",
+       "Values of friction, and of cohesion, on the map that the search begins with."},
+      {"calibrate", "refinements", at<calibrate, &K::refinements>, D::none, {0, 50}, Need::never, "4",
+       "Further points at most, each where the fitted surfaces come closest to both targets."},
+      {"calibrate", "parameter_step", at<calibrate, &K::parameter_step>, D::none, {0.01, 0.9}, Need::never, "0.25",
+       "Relative change of each parameter, up and down, for the sensitivities of both angles."},
+  };
+}
+
 std::vector<CaseKey> material_rows() {
   using M = Material;
   constexpr auto m = &Case::material;
@@ -260,10 +343,18 @@ std::vector<CaseKey> material_rows() {
 // clang-format on
 
 /// The effects that the stages carry. Each gives its largest strength: beyond it the model would lose its meaning.
+struct EffectParameter {
+  std::string name;
+  Dimension dimension;
+  Range range;
+  std::string fallback, sentence;
+};
+
 struct Effect {
   std::string name, enabled;
   double largest_strength;
   std::string sentence;
+  std::vector<EffectParameter> parameters = {};
 };
 
 std::vector<Effect> const& effects() {
@@ -272,6 +363,16 @@ std::vector<Effect> const& effects() {
       {"variable_conductivity", "true", 1, "Conductivity over temperature; off: its value at the solidus."},
       {"evaporation", "false", 10, "Heat carried off by metal vapour (Hertz-Knudsen)."},
       {"surface_losses", "false", 100, "Radiation and convection from metal that faces gas."},
+      {"blade_vibration", "false", 10,
+       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. Manuf. 2021, 102248).",
+       {{"amplitude", D::length, {0, 1e-4}, "\"2 um\"", "Amplitude of the recoater's vibration."},
+        {"frequency", D::frequency, {1, 1e5}, "\"500 Hz\"", "Frequency of the recoater's vibration."}}},
+      {"blade_compliance", "false", 100,
+       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides the stiffness (Penny et al., arXiv 2209.04320)."},
+      {"fines", "false", 10,
+       "Grains finer than the size distribution, mixed in by mass (sieving and laser sizing cut them off).",
+       {{"mass_fraction", D::none, {0, 0.5}, "0.02", "Share of the powder's mass that is fines."},
+        {"diameter", D::length, {1e-6, 5e-5}, "\"8 um\"", "Diameter of the fines."}}},
   };
   return rows;
 }
@@ -286,6 +387,12 @@ std::vector<CaseKey> effect_rows() {
     Range const range{0, effect.largest_strength};
     rows.push_back(
         {table, "strength", strength, D::none, range, Need::never, "1", "Factor on the effect; 0: as if off."});
+    for (EffectParameter const& p : effect.parameters) {
+      auto const value = [name = effect.name, key = p.name](Case& into) -> double& {
+        return into.effects[name].parameters[key];
+      };
+      rows.push_back({table, p.name, value, p.dimension, p.range, Need::never, p.fallback, p.sentence});
+    }
   }
   return rows;
 }
@@ -295,7 +402,7 @@ std::vector<CaseKey> effect_rows() {
 std::vector<CaseKey> const& case_schema() {
   static std::vector<CaseKey> const schema = [] {
     std::vector<CaseKey> rows;
-    for (auto const part : {powder_rows, machine_rows, laser_rows, heat_and_run_rows, effect_rows, material_rows}) {
+    for (auto const part : {powder_rows, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows, effect_rows, material_rows}) {
       for (CaseKey& row : part()) rows.push_back(std::move(row));
     }
     return rows;
@@ -304,6 +411,8 @@ std::vector<CaseKey> const& case_schema() {
 }
 
 bool is_needed(CaseKey const& row, Case const& c) {
+  bool const of_machine = row.table == "machine" || row.table == "heat" || name_of(row) == "powder.particles";
+  if (of_machine && !c.has_machine()) return false;
   switch (row.need) {
     case Need::always:
       return true;
@@ -315,6 +424,8 @@ bool is_needed(CaseKey const& row, Case const& c) {
       return c.contact.cohesion == Cohesion::sjkr || c.contact.cohesion == Cohesion::sjkr2;
     case Need::with_surface_energy:
       return c.contact.cohesion == Cohesion::jkr || c.contact.cohesion == Cohesion::dmt;
+    case Need::with_blade:
+      return c.machine.recoater != RecoaterKind::roller;
     case Need::never:
       return false;
   }
@@ -367,6 +478,17 @@ std::string preset_value(std::string const& preset, std::string const& table, st
       {"thesis", "contact", "rolling_friction", "0.15"},
       {"thesis", "contact", "cohesion_energy_density", "\"90000 J/m3\""},
       {"thesis", "material.IN718", "density", "\"9187 kg/m3\""},
+      {"thesis", "powder", "particles", "4500"},
+      // Thesis Table 5; it leaves open the depth of the accumulation zone, edges, friction of the blade, end wall.
+      {"thesis", "machine", "layer_thickness", "\"100 um\""},
+      {"thesis", "machine", "recoating_speed", "\"100 mm/s\""},
+      {"thesis", "machine", "accumulation_length", "\"1250 um\""},
+      {"thesis", "machine", "accumulation_depth", "\"300 um\""},
+      {"thesis", "machine", "gap_length", "\"150 um\""},
+      {"thesis", "machine", "deposition_length", "\"1250 um\""},
+      {"thesis", "machine", "width", "\"175 um\""},
+      {"thesis", "machine", "blade_width", "\"250 um\""},
+      {"thesis", "machine", "edge_radius", "\"5 um\""},
   };
   for (Value const& row : values) {
     if (row.preset == preset && row.table == table && row.key == key) return std::string(row.value);

@@ -29,6 +29,7 @@ enum class Need {
   with_part,            ///< unless powder is only spread
   with_energy_density,  ///< with contact.cohesion "sjkr" or "sjkr2"
   with_surface_energy,  ///< with contact.cohesion "jkr" or "dmt"
+  with_blade,           ///< unless machine.recoater is "roller"
   never
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace layerloop {
 
@@ -13,6 +14,22 @@ double mean_grain_volume(PowderSettings const& powder) {
     count += powder.basis == SizeBasis::number ? powder.fractions[c] : powder.fractions[c] / grain;
   }
   return volume / count;
+}
+
+PowderSettings fed_powder(Case const& checked) {
+  PowderSettings powder = checked.powder;
+  double const strength = checked.effect_strength("fines");
+  if (strength == 0) return powder;
+  auto const& fines = checked.effects.at("fines").parameters;
+  double const share = strength * fines.at("mass_fraction"), diameter = fines.at("diameter");
+  double const by_volume = share / (1 - share);  // over the rest of the powder; all grains have one density
+  double const grain = std::numbers::pi / 6 * std::pow(diameter, 3);
+  powder.diameters.push_back(diameter);
+  powder.fractions.push_back(powder.basis == SizeBasis::volume ? by_volume
+                                                               : by_volume * mean_grain_volume(checked.powder) / grain);
+  double const sum = std::accumulate(powder.fractions.begin(), powder.fractions.end(), 0.0);
+  for (double& fraction : powder.fractions) fraction /= sum;
+  return powder;
 }
 
 }  // namespace layerloop

@@ -68,6 +68,9 @@ constexpr auto units = std::to_array<Unit>({
     {"degC", D::temperature, 1, 273.15L},
     {"rad", D::angle, 1},
     {"deg", D::angle, pi / 180},
+    {"rad/s", D::angular_speed, 1},
+    {"deg/s", D::angular_speed, pi / 180},
+    {"deg/ms", D::angular_speed, pi / 0.18L},
     {"W/(m K)", D::conductivity, 1},
     {"W/(mK)", D::conductivity, 1},
     {"W/mK", D::conductivity, 1},
@@ -85,6 +88,10 @@ constexpr auto units = std::to_array<Unit>({
     {"J/g", D::specific_energy, 1e3L},
     {"kg/mol", D::molar_mass, 1},
     {"g/mol", D::molar_mass, 1e-3L},
+    {"Hz", D::frequency, 1},
+    {"kHz", D::frequency, 1e3L},
+    {"kg/m", D::linear_density, 1},
+    {"g/m", D::linear_density, 1e-3L},
 });
 
 std::string without_blanks(std::string_view text) {
@@ -136,6 +143,8 @@ std::string_view name(Dimension dimension) {
       return "a temperature";
     case D::angle:
       return "an angle";
+    case D::angular_speed:
+      return "an angular speed";
     case D::conductivity:
       return "a thermal conductivity";
     case D::specific_heat:
@@ -144,6 +153,10 @@ std::string_view name(Dimension dimension) {
       return "an energy per mass";
     case D::molar_mass:
       return "a molar mass";
+    case D::frequency:
+      return "a frequency";
+    case D::linear_density:
+      return "a mass per length";
   }
   return "";
 }

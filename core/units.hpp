@@ -18,10 +18,13 @@ enum class Dimension {
   power,
   temperature,
   angle,
+  angular_speed,
   conductivity,
   specific_heat,
   specific_energy,
-  molar_mass
+  molar_mass,
+  frequency,
+  linear_density
 };
 
 std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty for none

@@ -11,8 +11,9 @@ namespace layerloop::coupling {
 
 std::int64_t dose_count(Case const& checked) {
   MachineSettings const& machine = checked.machine;
+  if (machine.dosing == Dosing::feed) return 0;
   double const layer_volume = machine.layer_thickness * machine.deposition_length * machine.width;
-  return std::llround(machine.dose_factor * 0.6 * layer_volume / mean_grain_volume(checked.powder));
+  return std::llround(machine.dose_factor * 0.6 * layer_volume / mean_grain_volume(fed_powder(checked)));
 }
 
 Cost estimate_cost(Case const& checked) {

@@ -27,6 +27,7 @@
 #include "dem/dosing.hpp"
 #include "dem/heap_angle.hpp"
 #include "dem/layer_metrics.hpp"
+#include "dem/machine_rig.hpp"
 #include "dem/recoater.hpp"
 #include "dem/reservoir.hpp"
 #include "thermal/expose.hpp"
@@ -48,17 +49,17 @@ void lower(Run const& run, BuildState& build) {
   double const drop = run.checked.machine.layer_thickness;
   lower(build.solid, drop);
   build.substrate.shift(Vec3(0, 0, -drop));
-  dem::lower_plate(build.bed, run.checked);
+  dem::lower_plate(build.bed, dem::case_of_layer(run.checked, build.layers_done));
 }
 
-/// New grains rain into the accumulation zone and settle.
+/// The accumulation zone gets its powder, and it settles.
 void dose(Run const& run, BuildState& build) {
   Stopwatch const timed(build.record.wall_time.dem);
   Ledger& ledger = build.record.ledger;
   std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
   double const volume_before = total_volume(build.bed);
   build.next_id =
-      dem::dose(build.bed, run.checked, build.substrate, count, build.next_id, run.comm, run.show_progress());
+      dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count, build.next_id, run.comm, run.show_progress());
   ledger.particles_fed += count;
   ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
 }
@@ -83,11 +84,12 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   Stopwatch const timed(build.record.wall_time.dem);
   HeightMap const base = top_of_solid(build.solid, run.checked);
   dem::LayerBase const before = dem::layer_base(build.bed, base, run.checked);
-  MachineSettings const& machine = run.checked.machine;
+  Case const now = dem::case_of_layer(run.checked, build.layers_done);
+  MachineSettings const& machine = now.machine;
   dem::Reservoir const feed = dem::measure_reservoir(build.bed, machine);
   dem::HeapWatch heap(machine, feed.surface);
   dem::SpreadOutcome const sweep =
-      dem::spread(build.bed, run.checked, build.substrate, run.comm, run.show_progress(), std::ref(heap));
+      dem::spread(build.bed, now, build.substrate, run.comm, run.show_progress(), std::ref(heap));
   layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
   layer.stroke = stroke_metrics(feed, dem::measure_reservoir(build.bed, machine), heap, sweep.blade_force);
   for (LayerBin const& bin : layer.metrics.bins) layer.grains_in_layer += bin.grains;

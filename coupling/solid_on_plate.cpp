@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/ply_file.hpp"
 #include "core/triangle_surface.hpp"
 #include "coupling/part_surface_cgal.hpp"
+#include "dem/textured_plate.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -25,7 +27,7 @@ double enclosed_share(SurfaceDistance const& surface, Vec3 const& corner, double
 }
 
 TriangleSurface read_substrate(Case const& checked) {
-  TriangleSurface const surface = read_stl(checked.machine.substrate);
+  TriangleSurface const surface = read_surface(checked.machine.substrate);
   check_substrate(surface);
   for (Vec3 const& v : surface.vertices) {
     if (v.x() >= checked.machine.deposition_begin() && v.x() <= checked.machine.deposition_end() && v.y() >= 0 &&
@@ -42,8 +44,9 @@ TriangleSurface read_substrate(Case const& checked) {
 
 SolidField solid_on_plate(Case const& checked) {
   SolidField solid = empty_solid(checked);
-  if (checked.machine.substrate.empty()) return solid;
-  TriangleSurface const surface = read_substrate(checked);
+  bool const textured = checked.machine.has_textured_plate();
+  if (checked.machine.substrate.empty() && !textured) return solid;
+  TriangleSurface const surface = textured ? dem::textured_plate(checked) : read_substrate(checked);
   double top = 0;
   for (Vec3 const& v : surface.vertices) top = std::max(top, v.z());
   double const cell = solid.grid.cell;

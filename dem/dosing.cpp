@@ -7,9 +7,11 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/grain_size.hpp"
 #include "core/progress.hpp"
 #include "core/random.hpp"
 #include "dem/machine_rig.hpp"
+#include "dem/recoater.hpp"
 #include "dem/simulation.hpp"
 
 namespace layerloop::dem {
@@ -72,7 +74,7 @@ double cloud_top(MachineSettings const& machine, double volume) {
 }  // namespace
 
 double draw_radius(Case const& checked, std::int64_t id) {
-  PowderSettings const& powder = checked.powder;
+  PowderSettings const powder = fed_powder(checked);
   std::vector<double> number = powder.fractions;
   if (powder.basis == SizeBasis::volume) {
     for (std::size_t k = 0; k < number.size(); ++k) number[k] /= std::pow(powder.diameters[k], 3);
@@ -89,7 +91,7 @@ double draw_radius(Case const& checked, std::int64_t id) {
 
 void add_cloud(PowderBed& bed, Case const& checked, std::int64_t count, std::int64_t next_id) {
   MachineSettings const& m = checked.machine;
-  double const largest = *std::ranges::max_element(checked.powder.diameters) / 2;
+  double const largest = std::ranges::max(fed_powder(checked).diameters) / 2;
   FreeSpace space(m, largest);
   double volume = 0;
   for (std::size_t i = 0; i < bed.size(); ++i) {
@@ -129,12 +131,20 @@ void settle(Simulation& simulation, double longest, char const* stage, bool show
 
 std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count,
                   std::int64_t next_id, Communicator const& communicator, bool show_progress) {
-  Rig const rig = machine_rig(checked, substrate, bed, Tools::blade_and_gate);
+  bool const lifts = count == 0 && checked.machine.dosing == Dosing::feed;
+  if (lifts) raise_feed(bed, checked);
+  Rig const rig = machine_rig(checked, substrate, bed, lifts ? Tools::parked : Tools::parked_and_gate);
   add_cloud(bed, checked, count, next_id);
   Simulation simulation(motion_of(checked), rig, communicator);
+  std::size_t const fed = bed.size();
   simulation.scatter(bed);
   settle(simulation, longest_settling, "dose", show_progress && communicator.is_root());
   bed = simulation.gather();
+  if (bed.size() != fed)
+    throw PhysicsError(
+        fmt::format("{} grains ran off the machine while it was fed (the feed stands too high) lower powder.particles "
+                    "or machine.dose_factor, or lengthen machine.accumulation_length",
+                    fed - bed.size()));
   return next_id + count;
 }
 

@@ -9,8 +9,8 @@
 
 namespace layerloop::dem {
 
-/// Radius of the grain with this id [m]: a pure function of seed and id, distributed as powder.diameters and fractions
-/// say. Fractions by volume are turned into fractions by number first.
+/// Radius of the grain with this id [m]: a pure function of seed and id, distributed as fed_powder() says. Fractions by
+/// volume are turned into fractions by number first.
 double draw_radius(Case const& checked, std::int64_t id);
 
 /// Adds grains with ids next_id ... next_id + count - 1 as a loose cloud in the accumulation zone, between the bed that
@@ -18,9 +18,10 @@ double draw_radius(Case const& checked, std::int64_t id);
 /// depends on seed, ids and bed only.
 void add_cloud(PowderBed& bed, Case const& checked, std::int64_t count, std::int64_t next_id);
 
-/// Feeds `count` grains into the accumulation zone, between the parked blade and a gate, and lets everything come to
-/// rest. Collective; every rank gets the same bed. \param count  0: the bed only settles \return the next free id
-/// \throws PhysicsError a guard of Simulation; StoppedBySignal
+/// Feeds the accumulation zone between the parked recoater and a gate, and lets everything come to rest: `count` new
+/// grains rain into it; with count = 0 and Dosing::feed the piston rises by one dose first (see case_of_layer).
+/// Collective; every rank gets the same bed. \return the next free id \throws PhysicsError a guard of Simulation;
+/// StoppedBySignal
 std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count,
                   std::int64_t next_id, Communicator const& communicator, bool show_progress);
 

@@ -62,17 +62,15 @@ std::int64_t Simulation::look() {
   if (seen.broken > 0) fail(find_lost_grain());
   largest_overlap_ = std::max(largest_overlap_, seen.overlap);
   if (seen.overlap > overlap_limit) fail(find_overlap(seen.overlap));
-  if (seen.overlap > nip_limit && fastest_wall_ > 0) take_out_nipped();
+  if (seen.overlap > nip_limit && moving_walls_.fastest() > 0) take_out_nipped();
 
-  double const dt = motion_.time_step, step = std::sqrt(seen.step_squared), speed = std::max(step / dt, fastest_wall_);
-  double const walls_moved = fastest_wall_ * (time() - time_built_);
-  double const moved = std::max(std::sqrt(seen.displacement_squared), walls_moved);
+  double const dt = motion_.time_step, step = std::sqrt(seen.step_squared), speed = std::max(step / dt, moving_walls_.fastest());
+  double const moved = std::max(std::sqrt(seen.displacement_squared), moving_walls_.travelled());
   bool const contact_too_short = speed > 0 && hertz_contact_time(smallest_radius_, motion_.density, speed,
                                                                  motion_.contact) < least_steps_a_contact * dt;
   if (step > step_limit * smallest_radius_ || contact_too_short || moved > 0.5 * skin_) fail(find_fastest());
 
-  std::int64_t const force = communicator_.sum(pushed_back_);
-  blade_force_ = std::max(blade_force_, static_cast<double>(force) * 1e-18);
+  moving_walls_.record(time());
 
   double const expected = 1.5 * speed * dt + 1e-30;  // speeds may grow until the next look
   auto const steps_left = [&](double way) {
@@ -93,7 +91,7 @@ void Simulation::check_sleep() {
   std::vector<char> near_moving_wall(grains_.owned, 0);
   for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w) {
     auto const row = static_cast<std::size_t>(wall_contacts_.grain[w]);
-    near_moving_wall[row] = is_near_moving_wall(wall_contacts_, w, rig_.walls);
+    near_moving_wall[row] = is_near_moving_wall(wall_contacts_, w, moving_walls_);
   }
   double const interval = static_cast<double>(steps_between_checks + steps_between_looks) * motion_.time_step;
   bool const changed = update_sleep(grains_, neighbours_, near_moving_wall, period_, interval);
@@ -119,7 +117,6 @@ std::int64_t Simulation::take_out(std::vector<char> const& leaves) {
 
 template <class Visit>
 void Simulation::for_each_overlap(Visit const& visit) const {
-  static std::string const substrate = "the substrate";
   Grains const& g = grains_;
   for (std::size_t k = 0; k < neighbours_.size(); ++k) {
     auto const i = static_cast<std::size_t>(neighbours_.first[k]), j = static_cast<std::size_t>(neighbours_.second[k]);
@@ -130,16 +127,11 @@ void Simulation::for_each_overlap(Visit const& visit) const {
   }
   for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w) {
     auto const i = static_cast<std::size_t>(wall_contacts_.grain[w]);
-    auto const relative = [&](double distance) { return (g[i].radius - distance) / (2 * g[i].radius); };
-    for (std::int32_t b = wall_contacts_.block_begin[w]; b < wall_contacts_.block_begin[w + 1]; ++b) {
-      RoundedBlock const& block =
-          rig_.walls.blocks[static_cast<std::size_t>(wall_contacts_.blocks[static_cast<std::size_t>(b)])];
-      visit(i, i, relative(nearest(block, block.velocity * time(), g[i].x, g[i].z).distance), &block.name);
-    }
-    for (std::int32_t t = wall_contacts_.triangle_begin[w]; t < wall_contacts_.triangle_begin[w + 1]; ++t) {
-      std::int32_t const triangle = wall_contacts_.triangles[static_cast<std::size_t>(t)].triangle;
-      visit(i, i, relative(std::abs(contact_with(rig_.walls.substrate, triangle, {g[i].x, g[i].y, g[i].z}).distance)),
-            &substrate);
+    for (std::int32_t c = wall_contacts_.begin[w]; c < wall_contacts_.begin[w + 1]; ++c) {
+      WallCandidate const& candidate = wall_contacts_.candidates[static_cast<std::size_t>(c)];
+      double const distance = distance_to(candidate, scene(), {g[i].x, g[i].y, g[i].z});
+      visit(i, i, (g[i].radius - distance) / (2 * g[i].radius),
+            &rig_.walls.name(static_cast<std::size_t>(candidate.wall)));
     }
   }
 }
@@ -230,7 +222,7 @@ Simulation::Fault Simulation::find_fastest() const {
     }
   }
   if (fastest < 0) return {};
-  double const speed = std::max(std::sqrt(fastest), fastest_wall_);
+  double const speed = std::max(std::sqrt(fastest), moving_walls_.fastest());
   double const contact_steps =
       hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) / motion_.time_step;
   return {fastest,

@@ -6,25 +6,31 @@
 
 namespace layerloop::dem {
 
-/// What stands on the machine besides its platforms.
-enum class Tools { blade_and_gate, moving_blade, none };
+/// What stands on the machine besides its platforms, and moves.
+enum class Tools {
+  parked_and_gate,  ///< the recoater waits and a gate closes the accumulation zone
+  parked,           ///< without the gate: the piston's powder stands free
+  moving_recoater,
+  none
+};
 
-/// Edges of the platforms, wider than the blade's [m]: a sharp edge would cut into grains that the blade drags over it.
-inline constexpr double platform_edge_radius = 20e-6;
-/// From the blade's last position to where the end platform ends [m].
+/// From the recoater's last position to where the end platform ends [m].
 inline constexpr double sink_distance = 100e-6;
 
-/// The blade where it waits, its front at x = 0.
-RoundedBlock parked_blade(MachineSettings const& machine);
+/// Adds the recoater where it waits: its front at x = 0.
+void add_parked_recoater(Walls& walls, MachineSettings const& machine);
 
-/// Distance that the blade travels: its front starts at x = 0, its rear edge ends at the end of the deposition zone
-/// [m].
+/// Distance that the recoater travels [m]. A blade's rear edge ends at the end of the deposition zone, and a roller
+/// where it has left the layer; before a high end wall either stops short by two layers.
 double blade_stroke(MachineSettings const& machine);
 
+/// The case as it stands when this layer is made: the piston has lifted the accumulation zone's floor.
+Case case_of_layer(Case const& checked, std::int64_t layer);
+
 /// The machine: rear wall, left platform (its edge is sharp: nothing may lodge under the parked blade), accumulation
-/// pit, gap platform, deposition pit over the substrate, end platform with the sink behind it. The blade is parked with
-/// its front at x = 0 (it moves with Tools::moving_blade). The gate closes the accumulation zone at its far end while
-/// the feed is dosed; it stands on the gap platform, or on grains that lie there.
+/// pit, gap platform, deposition pit over the substrate, end platform with the sink behind it. The recoater is parked
+/// with its front at x = 0. The gate closes the accumulation zone at its far end while the feed is dosed; it stands on
+/// the gap platform, or on grains that lie there. A roller, under which grains could roll, is replaced by a gate then.
 Rig machine_rig(Case const& checked, TriangleSurface const& substrate, PowderBed const& bed, Tools tools);
 
 }  // namespace layerloop::dem

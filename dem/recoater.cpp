@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/compensated_sum.hpp"
 #include "core/error.hpp"
@@ -11,11 +12,13 @@
 #include "dem/dosing.hpp"
 #include "dem/machine_rig.hpp"
 #include "dem/simulation.hpp"
+#include "dem/softening.hpp"
 
 namespace layerloop::dem {
 namespace {
 constexpr double longest_settling = 1.5e-3;  // after the stroke [s]
 constexpr std::int64_t steps_between_progress = 1000;
+constexpr double frame_distance = 50e-6;  // of the stroke between two looks of a StrokeWatch [m]
 
 /// Raised solid in the blade's way, in words; empty when there is none.
 std::string raised_solid(MachineSettings const& machine, TriangleSurface const& substrate) {
@@ -30,6 +33,11 @@ std::string raised_solid(MachineSettings const& machine, TriangleSurface const& 
   return fmt::format(
       "solid stands {:.2f} um above the blade's lower edge at x = {:.1f}, y = {:.1f} um ({} mesh points are above it)",
       (highest.z() - machine.blade_clearance) * 1e6, highest.x() * 1e6, highest.y() * 1e6, count);
+}
+
+void warn_once(std::string const& note) {
+  static bool warned = false;
+  if (!note.empty() && !std::exchange(warned, true)) fmt::print(stderr, "note: {}\n", note);
 }
 
 double median_radius(PowderBed const& bed) {
@@ -52,10 +60,12 @@ void count_overflow(PowderBed const& before, PowderBed const& after, SpreadOutco
 
 /// Takes out what lies beside the zones, and what is in the way of the returning blade.
 void clear_platforms(PowderBed& bed, Case const& checked) {
-  RoundedBlock const blade = parked_blade(checked.machine);
+  Walls recoater;
+  add_parked_recoater(recoater, checked.machine);
   std::vector<char> keep(bed.size());
   for (std::size_t i = 0; i < bed.size(); ++i) {
-    bool const in_the_way = nearest(blade, 0, bed.x[i], bed.z[i]).distance < 0.99 * bed.radius[i];
+    bool const in_the_way =
+        nearest(recoater, 0, checked.machine.width, bed.position(i)).distance < 0.99 * bed.radius[i];
     keep[i] = bed.x[i] >= 0 && bed.x[i] <= checked.machine.deposition_end() && !in_the_way;
   }
   bed.retain(keep);
@@ -65,7 +75,18 @@ void note(SpreadOutcome& outcome, Simulation const& simulation) {
   outcome.steps += simulation.steps();
   outcome.nipped_grains += simulation.nipped();
   outcome.largest_overlap = std::max(outcome.largest_overlap, simulation.largest_overlap());
-  outcome.blade_force = std::max(outcome.blade_force, simulation.blade_force());
+}
+
+void note_forces(SpreadOutcome& outcome, Simulation const& stroke) {
+  outcome.force_history = stroke.wall_forces();
+  CompensatedSum impulse;
+  double before = 0;
+  for (ForceSample const& sample : outcome.force_history) {
+    outcome.blade_force = std::max(outcome.blade_force, -sample.x);
+    impulse.add(-sample.x * (sample.time - before));
+    before = sample.time;
+  }
+  if (before > 0) outcome.mean_blade_force = impulse.value() / before;
 }
 }  // namespace
 
@@ -75,6 +96,8 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   Motion const motion = motion_of(checked);
   SpreadOutcome outcome;
   outcome.blade_note = raised_solid(machine, substrate);
+  outcome.stiffness_note = softening_note(checked);
+  if (communicator.is_root()) warn_once(outcome.stiffness_note);
   if (!outcome.blade_note.empty() && machine.blade_collision == BladeCollision::stop) {
     throw PhysicsError(
         outcome.blade_note +
@@ -88,22 +111,23 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   outcome.steps_per_contact =
       hertz_contact_time(smallest, motion.density, machine.recoating_speed, checked.contact) / motion.time_step;
 
-  Simulation stroke(motion, machine_rig(checked, substrate, bed, Tools::moving_blade), communicator);
+  Simulation stroke(motion, machine_rig(checked, substrate, bed, Tools::moving_recoater), communicator);
   stroke.scatter(bed);
   double const duration = blade_stroke(machine) / machine.recoating_speed;
-  double next_look = 0;
   Progress progress("spread", duration, show_progress && communicator.is_root());
-  for (auto left = static_cast<std::int64_t>(std::ceil(duration / motion.time_step)); left > 0;
-       left -= steps_between_progress) {
-    stroke.advance(std::min(left, steps_between_progress));
+  auto const steps = static_cast<std::int64_t>(std::ceil(duration / motion.time_step));
+  auto const steps_between_frames =
+      static_cast<std::int64_t>(frame_distance / (machine.recoating_speed * motion.time_step)) + 1;
+  while (stroke.steps() < steps) {
+    std::int64_t const to_frame = steps_between_frames - stroke.steps() % steps_between_frames;
+    stroke.advance(std::min({steps - stroke.steps(), steps_between_progress, to_frame}));
     progress.update(stroke.time());
-    double const front = stroke.time() * machine.recoating_speed;
-    if (!watch || front < next_look) continue;
-    watch(stroke.gather(), front);
-    next_look = front + 50e-6;
+    if (watch && stroke.steps() % steps_between_frames == 0)
+      watch(stroke.gather(), machine.recoating_speed * stroke.time());
   }
   bed = stroke.gather();
   note(outcome, stroke);
+  note_forces(outcome, stroke);
 
   clear_platforms(bed, checked);
   if (bed.size() == 0)

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "core/grain_size.hpp"
 #include "core/rayleigh_time.hpp"
 #include "dem/step_barrier.hpp"
 
@@ -40,7 +41,7 @@ void take_from_ring(GrainAction* ring, std::size_t from, std::size_t to, GrainAc
 }  // namespace
 
 Motion motion_of(Case const& checked) {
-  double const smallest = *std::ranges::min_element(checked.powder.diameters) / 2;
+  double const smallest = std::ranges::min(fed_powder(checked).diameters) / 2;
   return {.between_grains = grain_law(checked.contact),
           .at_walls = wall_law(checked.contact),
           .contact = checked.contact,
@@ -54,17 +55,21 @@ Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
       rig_(std::move(rig)),
       communicator_(communicator),
       decomposition_(communicator, rig_.length),
+      moving_walls_(rig_.walls, communicator),
       period_{rig_.length, rig_.width},
-      laws_{law_form(motion_.contact), 1, {motion_.between_grains}} {
-  for (RoundedBlock const& block : rig_.walls.blocks) fastest_wall_ = std::max(fastest_wall_, std::abs(block.velocity));
-}
+      laws_{law_form(motion_.contact), 1, {motion_.between_grains}} {}
 
 void Simulation::scatter(PowderBed const& bed) {
   grains_.clear();
   first_springs_ = bed.contacts;
   steps_ = next_sink_check_ = next_sleep_check_ = rebuilds_ = nipped_ = 0;
+<<<<<<< HEAD
   largest_overlap_ = blade_force_ = 0;
   phases_ = {};
+=======
+  largest_overlap_ = 0;
+  moving_walls_.start();
+>>>>>>> part-c
   watch_ = {};
   if (bed.size() == 0) throw InputError("there is no grain to move (the bed is empty) raise powder.particles");
   auto const [smallest, largest] = std::ranges::minmax(bed.radius);
@@ -81,7 +86,7 @@ void Simulation::scatter(PowderBed const& bed) {
   if (rig_.length < 4 * largest + 2 * (skin_ + reach_))
     throw InputError("the period along x is shorter than two grains (a grain would meet itself) use a longer one");
   unit_ = ActionUnit(motion_.between_grains.normal_stiffness, largest);
-  triangle_grid_ = TriangleGrid(rig_.walls.substrate, 2 * largest);
+  mesh_grids_ = grids_of(rig_.walls, 2 * largest);
   Range const own = share(bed.size(), communicator_.rank(), communicator_.size());
   for (std::size_t i = own.from; i < own.to; ++i) {
     grains_.push_back(record_of(bed, i, motion_.density));
@@ -126,7 +131,7 @@ void Simulation::rebuild() {
   grains_.close();
 
   build_neighbours(neighbours_, grains_, skin_ + reach_, period_, springs);
-  build_wall_contacts(wall_contacts_, grains_, rig_.walls, triangle_grid_, skin_ + reach_, time(), springs);
+  build_wall_contacts(wall_contacts_, grains_, scene(), mesh_grids_, skin_ + reach_, springs);
   wall_entry_.assign(grains_.owned, -1);
   for (std::size_t w = 0; w < wall_contacts_.grain.size(); ++w)
     wall_entry_[static_cast<std::size_t>(wall_contacts_.grain[w])] = static_cast<std::int32_t>(w);
@@ -138,7 +143,7 @@ void Simulation::rebuild() {
     y_built_[i] = grains_[i].y;
     z_built_[i] = grains_[i].z;
   }
-  time_built_ = time();
+  moving_walls_.mark();
 
   int const cores = std::max(1, omp_get_num_procs() / decomposition_.ranks_on_node());
   team_.allow(std::clamp(static_cast<int>(grains_.owned / grains_a_thread), 1, std::min(omp_get_max_threads(), cores)));
@@ -205,7 +210,11 @@ void Simulation::choose_near_pairs(Share& share, double half_gap) {
   share.actions.assign(share.near.slots(), {});
 }
 
+<<<<<<< HEAD
 void Simulation::evaluate(Share& share, std::size_t chunk, double now, PhaseClock& clock, PhaseTimes& times) {
+=======
+void Simulation::evaluate(Share& share, std::size_t chunk) {
+>>>>>>> part-c
   std::size_t const from = share.near.from + chunk * NearPairs::rows_a_chunk,
                     to = std::min(from + NearPairs::rows_a_chunk, share.near.to);
   double const dt = motion_.time_step;
@@ -216,15 +225,23 @@ void Simulation::evaluate(Share& share, std::size_t chunk, double now, PhaseCloc
     return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
                                     near_walls.begin());
   };
+<<<<<<< HEAD
   WallReport const report = evaluate_walls(wall_contacts_, share.batch, grains_, rig_.walls, motion_.at_walls, now, dt,
                                            entry(from), entry(to));
   share.watch.overlap = std::max({share.watch.overlap, overlap, report.worst_overlap});
   share.pushed_back += report.pushed_back;
   clock.add_to(times.walls);
+=======
+  double const wall_overlap = evaluate_walls(wall_contacts_, share.batch, grains_, scene(), motion_.at_walls, dt,
+                                             entry(from), entry(to));
+  share.watch.overlap = std::max({share.watch.overlap, overlap, wall_overlap});
+>>>>>>> part-c
 }
 
 void Simulation::run_steps(std::int64_t count) {
   if (static_cast<int>(shares_.size()) != team_.threads()) share_out(team_.threads());
+  std::vector<WallForces*> wall_forces;
+  for (Share& share : shares_) wall_forces.push_back(&share.batch.force);
   StepBarrier barrier;
 #pragma omp parallel num_threads(team_.threads())
   {
@@ -236,14 +253,16 @@ void Simulation::run_steps(std::int64_t count) {
     PhaseClock clock;
     double way = way_since_choice_, half_gap = half_gap_;  // the same on all threads
     for (std::int64_t s = 0; s < count; ++s) {
-      own.pushed_back = 0;
       std::size_t waits = own.near.from;  // rows below must stay until earlier shares have computed their pairs
       for (std::size_t k = 0; k < number; ++k) waits = std::clamp(shares_[k].near.reach(), waits, own.near.to);
       own.held.resize(waits - own.near.from);
-      double const now = static_cast<double>(steps_ + s) * motion_.time_step;
       double fastest = 0;
       for (std::size_t chunk = 0; chunk < own.near.chunks(); ++chunk) {
+<<<<<<< HEAD
         evaluate(own, chunk, now, clock, times);
+=======
+        evaluate(own, chunk);
+>>>>>>> part-c
         std::size_t const from = own.near.from + chunk * NearPairs::rows_a_chunk,
                           to = std::min(from + NearPairs::rows_a_chunk, own.near.to),
                           held = std::clamp(waits, from, to);
@@ -255,7 +274,14 @@ void Simulation::run_steps(std::int64_t count) {
         clock.add_to(times.motion);
       }
       barrier.wait(threads);
+<<<<<<< HEAD
       clock.add_to(times.communication);
+=======
+      if (number == 0) {
+        double const dt = motion_.time_step;
+        moving_walls_.advance(static_cast<double>(steps_ + s + 1) * dt, dt, wall_forces);
+      }
+>>>>>>> part-c
       add_far_actions(number, own.near.from, waits, own.held.data());
       fastest = std::max(fastest, move(own, own.near.from, waits, own.held.data()));
       own.fastest_squared = fastest;
@@ -294,9 +320,7 @@ void Simulation::run_steps(std::int64_t count) {
     }
   }
   steps_ += count;
-  pushed_back_ = 0;
   for (Share const& share : shares_) {
-    pushed_back_ += share.pushed_back;
     watch_.overlap = std::max(watch_.overlap, share.watch.overlap);
     watch_.step_squared = std::max(watch_.step_squared, share.watch.step_squared);
     watch_.broken = std::max(watch_.broken, share.watch.broken);

@@ -11,6 +11,7 @@
 #include "dem/contact_law.hpp"
 #include "dem/decomposition.hpp"
 #include "dem/grains.hpp"
+#include "dem/moving_walls.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/pair_contacts.hpp"
 #include "dem/phase_times.hpp"
@@ -83,7 +84,8 @@ class Simulation {
   std::int64_t steps() const { return steps_; }
   std::int64_t grains() const { return grain_count_; }         ///< overflow left out
   double largest_overlap() const { return largest_overlap_; }  ///< over the diameter, since scatter
-  double blade_force() const { return blade_force_; }  ///< x force on moving walls, largest since scatter [N], sampled
+  /// Forces on walls that move since scatter, at every look.
+  std::vector<ForceSample> const& wall_forces() const { return moving_walls_.history(); }
   std::int64_t nipped() const {
     return nipped_;
   }  ///< grains taken out because a moving wall crushed them, since scatter
@@ -124,7 +126,6 @@ class Simulation {
     std::vector<GrainAction> held;     ///< of the first rows, which must wait for earlier shares
     WallBatch batch;
     Watch watch;
-    std::int64_t pushed_back = 0;
     double fastest_squared = 0;  ///< of the last step
   };
 
@@ -133,7 +134,11 @@ class Simulation {
   void share_out(int shares);
   void choose_near_pairs(Share& share, double half_gap);
   double suitable_half_gap(double fastest_squared) const;
+<<<<<<< HEAD
   void evaluate(Share& share, std::size_t chunk, double now, PhaseClock& clock, PhaseTimes& times);
+=======
+  void evaluate(Share& share, std::size_t chunk);
+>>>>>>> part-c
   /// Takes what was done to rows [from, to) out of the ring, for later.
   void hold(Share& share, std::size_t from, std::size_t to);
   /// Adds what waits behind the rings of shares [0, number] for rows [from, to) to actions[row - from].
@@ -152,12 +157,14 @@ class Simulation {
   Fault find_overlap(double seen) const;
   Fault find_fastest() const;
   bool is_inside(std::size_t row) const;
+  WallScene scene() const { return {rig_.walls, moving_walls_, rig_.width}; }
 
   Motion motion_;
   Rig rig_;
   Communicator communicator_;
   Decomposition decomposition_;
-  TriangleGrid triangle_grid_;
+  MovingWalls moving_walls_;
+  MeshGrids mesh_grids_;
   Grains grains_;
   Period period_;
   LawTable laws_;
@@ -171,11 +178,17 @@ class Simulation {
   std::vector<ContactSpring> first_springs_;  ///< of the scattered bed, until the first rebuild
   std::vector<double> x_built_, y_built_, z_built_;
   Watch watch_;
+<<<<<<< HEAD
   double time_built_ = 0, skin_ = 0, smallest_radius_ = 0, largest_radius_ = 0, fastest_wall_ = 0;
   double largest_overlap_ = 0, blade_force_ = 0;
   std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, pushed_back_ = 0, next_sink_check_ = 0,
                next_sleep_check_ = 0;
   PhaseTimes phases_;
+=======
+  double skin_ = 0, smallest_radius_ = 0, largest_radius_ = 0;
+  double largest_overlap_ = 0;
+  std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, next_sink_check_ = 0, next_sleep_check_ = 0;
+>>>>>>> part-c
   ThreadTeam team_;
 };
 

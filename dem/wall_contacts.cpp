@@ -6,83 +6,112 @@
 namespace layerloop::dem {
 namespace {
 
-Vec3 centre(Grains const& g, std::size_t i) { return {g[i].x, g[i].y, g[i].z}; }
+/// A grain, as walls see it.
+struct GrainView {
+  Vec3 centre, v, w;
+  double radius, inverse_mass;
+};
 
-/// The triangles that grain `w` overlaps now, merged; the others are put to sleep for as long as they cannot be
-/// reached.
-void find_touched(WallContacts& contacts, std::size_t w, Grains const& g, TriangleSurface const& surface,
-                  std::vector<TriangleContact>& touched) {
-  touched.clear();
-  auto const i = static_cast<std::size_t>(contacts.grain[w]);
-  for (std::int32_t c = contacts.triangle_begin[w]; c < contacts.triangle_begin[w + 1]; ++c) {
-    TriangleCandidate& candidate = contacts.triangles[static_cast<std::size_t>(c)];
-    if (candidate.awake_at > contacts.path[w]) continue;
-    TriangleContact const contact = contact_with(surface, candidate.triangle, centre(g, i));
-    double const gap = std::abs(contact.distance) - g[i].radius;
-    if (gap < 0)
-      touched.push_back(contact);
-    else
-      candidate.awake_at = contacts.path[w] + gap * (1 - 1e-9);
-  }
-  merge_contacts(surface, touched);
+GrainView view_of(Grains const& grains, std::size_t i) {
+  GrainState const& g = grains[i];
+  return {{g.x, g.y, g.z}, {g.vx, g.vy, g.vz}, {g.wx, g.wy, g.wz}, g.radius, g.inverse_mass};
 }
 
-bool share_corner(TriangleSurface const& surface, std::int64_t a, std::int64_t b) {
+WallPose const& pose_of(WallCandidate const& candidate, WallScene const& scene) {
+  return scene.moving.poses()[static_cast<std::size_t>(candidate.wall)];
+}
+
+Vec3 in_frame_of(WallPose const& pose, Vec3 const& p) { return {p.x() - pose.dx, p.y(), p.z() - pose.dz}; }
+
+bool is_triangle(std::int64_t key) { return key >= first_triangle_key; }
+
+bool same_mesh(std::int64_t a, std::int64_t b) {
+  return is_triangle(a) && is_triangle(b) &&
+         (a - first_triangle_key) / keys_a_mesh == (b - first_triangle_key) / keys_a_mesh;
+}
+
+std::int32_t triangle_of(std::int64_t key) {
+  return static_cast<std::int32_t>((key - first_triangle_key) % keys_a_mesh);
+}
+
+bool share_corner(TriangleSurface const& surface, std::int32_t a, std::int32_t b) {
   auto const &first = surface.triangles[static_cast<std::size_t>(a)],
              &second = surface.triangles[static_cast<std::size_t>(b)];
   return std::ranges::find_first_of(first, second) != first.end();
 }
 
-/// The spring that a contact goes on with: its own, or, where a grain rolls from one triangle to the next, that of a
-/// neighbouring triangle which it has just left.
+WallSpring own_spring(WallContacts const& contacts, std::size_t w, std::int64_t key) {
+  auto const begin = contacts.springs.begin() + contacts.spring_begin[w], end = begin + contacts.spring_count[w];
+  auto const own = std::find_if(begin, end, [&](WallSpring const& s) { return s.key == key; });
+  return own != end ? *own : WallSpring{key, 0, 0, 0};
+}
+
+/// The spring that a contact with a triangle goes on with: its own, or, where a grain rolls from one triangle to the
+/// next, that of a neighbouring triangle which it has just left.
 WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t key,
                      std::vector<TriangleContact> const& touched, TriangleSurface const& surface) {
   auto const begin = contacts.springs.begin() + contacts.spring_begin[w], end = begin + contacts.spring_count[w];
-  auto const own = std::find_if(begin, end, [&](WallSpring const& s) { return s.key == key; });
-  if (own != end) return *own;
+  if (std::any_of(begin, end, [&](WallSpring const& s) { return s.key == key; })) return own_spring(contacts, w, key);
   WallSpring const* left = nullptr;
   auto const was_left_for_this = [&](WallSpring const& s) {
-    if (s.key < first_triangle_key) return false;
-    std::int64_t const triangle = s.key - first_triangle_key;
-    return share_corner(surface, triangle, key - first_triangle_key) &&
-           std::ranges::none_of(touched, [&](TriangleContact const& t) { return t.triangle == triangle; });
+    if (!same_mesh(s.key, key)) return false;
+    return share_corner(surface, triangle_of(s.key), triangle_of(key)) &&
+           std::ranges::none_of(touched, [&](TriangleContact const& t) { return t.triangle == triangle_of(s.key); });
   };
-  for (auto s = begin; s != end && key >= first_triangle_key; ++s) {
+  for (auto s = begin; s != end; ++s) {
     if (was_left_for_this(*s) && (!left || s->key < left->key)) left = &*s;
   }
   if (left) return {key, left->x, left->y, left->z};
   return {key, 0, 0, 0};
 }
 
-void append(WallBatch& b, Grains const& g, std::size_t i, double distance, Vec3 const& n, double wall_velocity,
-            WallSpring const& spring) {
-  double const overlap = g[i].radius - distance, arm = g[i].radius - 0.5 * overlap;
+/// Velocity of a wall's surface where it touches, and spin of the wall about y.
+struct WallSurface {
+  double vx, vz, spin;
+};
+
+WallSurface surface_of(WallScene const& scene, std::size_t wall, Vec3 const& normal) {
+  WallPose const& pose = scene.moving.poses()[wall];
+  std::size_t const roller = wall - scene.walls.blocks.size();
+  if (roller >= scene.walls.rollers.size()) return {pose.vx, pose.vz, 0};
+  Roller const& r = scene.walls.rollers[roller];
+  double const speed = r.spin * r.radius;  // spin x normal, with spin along y
+  return {pose.vx + speed * normal.z(), pose.vz - speed * normal.x(), r.spin};
+}
+
+void append(WallBatch& b, GrainView const& g, double distance, Vec3 const& n, std::size_t wall, WallScene const& scene,
+            double friction, WallSpring const& spring) {
+  double const overlap = g.radius - distance, arm = g.radius - 0.5 * overlap;
+  WallSurface const surface = surface_of(scene, wall, n);
   b.overlap.push_back(overlap);
-  b.radius.push_back(g[i].radius);
-  b.inverse_mass.push_back(g[i].inverse_mass);
+  b.radius.push_back(g.radius);
+  b.inverse_mass.push_back(g.inverse_mass);
+  b.friction.push_back(scene.walls.friction(wall).value_or(friction));
   b.nx.push_back(n.x());
   b.ny.push_back(n.y());
   b.nz.push_back(n.z());
-  b.vx.push_back(g[i].vx - wall_velocity);
-  b.vy.push_back(g[i].vy);
-  b.vz.push_back(g[i].vz);
-  b.sx.push_back(arm * g[i].wx);
-  b.sy.push_back(arm * g[i].wy);
-  b.sz.push_back(arm * g[i].wz);
-  b.wx.push_back(g[i].wx);
-  b.wy.push_back(g[i].wy);
-  b.wz.push_back(g[i].wz);
+  b.vx.push_back(g.v.x() - surface.vx);
+  b.vy.push_back(g.v.y());
+  b.vz.push_back(g.v.z() - surface.vz);
+  b.sx.push_back(arm * g.w.x());
+  b.sy.push_back(arm * g.w.y());
+  b.sz.push_back(arm * g.w.z());
+  b.wx.push_back(g.w.x());
+  b.wy.push_back(g.w.y() - surface.spin);
+  b.wz.push_back(g.w.z());
   b.spring_x.push_back(spring.x);
   b.spring_y.push_back(spring.y);
   b.spring_z.push_back(spring.z);
   b.key.push_back(spring.key);
+  b.wall.push_back(static_cast<std::int32_t>(wall));
 }
 
 void clear(WallBatch& b) {
-  for (auto* v : {&b.overlap, &b.radius, &b.inverse_mass, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx, &b.sy, &b.sz,
-                  &b.wx, &b.wy, &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
+  for (auto* v : {&b.overlap, &b.radius, &b.inverse_mass, &b.friction, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx,
+                  &b.sy, &b.sz, &b.wx, &b.wy, &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
     v->clear();
   b.key.clear();
+  b.wall.clear();
 }
 
 /// All contacts of the batch at once.
@@ -90,7 +119,7 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   std::size_t const n = b.overlap.size();
   for (auto* v : {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz}) v->resize(n);
   double const *overlap = b.overlap.data(), *radius = b.radius.data(), *inverse_mass = b.inverse_mass.data();
-  double const *nx = b.nx.data(), *ny = b.ny.data(), *nz = b.nz.data();
+  double const *friction = b.friction.data(), *nx = b.nx.data(), *ny = b.ny.data(), *nz = b.nz.data();
   double const *vx = b.vx.data(), *vy = b.vy.data(), *vz = b.vz.data();
   double const *sx = b.sx.data(), *sy = b.sy.data(), *sz = b.sz.data();
   double const *wx = b.wx.data(), *wy = b.wy.data(), *wz = b.wz.data();
@@ -101,8 +130,10 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
 #pragma omp simd
   for (std::size_t c = 0; c < n; ++c) {
     double const arm = radius[c] - 0.5 * overlap[c];
+    ContactLaw law_of_wall = law_here;
+    law_of_wall.sliding_friction = friction[c];
     ContactAction const a = act<Reach::touch, RollingModel::cdt>(
-        law_here,
+        law_of_wall,
         {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c], sz[c],
          wx[c],      wy[c],     wz[c],           ux[c], uy[c], uz[c], 0,     0,     0,     0,     false},
         dt);
@@ -118,47 +149,127 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   }
 }
 
-std::vector<std::int32_t> blocks_near(Walls const& walls, Grains const& g, std::size_t i, double skin, double time) {
-  std::vector<std::int32_t> near;
-  for (std::size_t b = 0; b < walls.blocks.size(); ++b) {
-    RoundedBlock const& block = walls.blocks[b];
-    if (nearest(block, block.velocity * time, g[i].x, g[i].z).distance < g[i].radius + skin)
-      near.push_back(static_cast<std::int32_t>(b));
+/// Walls and triangles within `reach` of a grain.
+void find_candidates(WallScene const& scene, MeshGrids const& grids, GrainView const& g, double skin,
+                     std::vector<std::int32_t>& triangles, std::vector<WallCandidate>& found) {
+  Walls const& walls = scene.walls;
+  double const reach = g.radius + skin;
+  for (std::size_t wall = 0; wall < walls.size(); ++wall) {
+    WallCandidate candidate{key_of(walls, wall), static_cast<std::int32_t>(wall), 0};
+    if (wall < walls.primitives()) {
+      if (distance_to(candidate, scene, g.centre) < reach) found.push_back(candidate);
+      continue;
+    }
+    std::int64_t const first = candidate.key;
+    grids[wall - walls.primitives()].find(in_frame_of(pose_of(candidate, scene), g.centre), reach, triangles);
+    for (std::int32_t const t : triangles) {
+      candidate.key = first + t;
+      if (distance_to(candidate, scene, g.centre) < reach) found.push_back(candidate);
+    }
   }
-  return near;
+}
+
+/// Contacts of one grain with the triangles [from, to) of one mesh, merged. Triangles out of reach are put to sleep
+/// for as long as they cannot be reached.
+void touch_mesh(WallContacts& contacts, std::size_t w, WallBatch& batch, GrainView const& g, WallScene const& scene,
+                double friction, std::size_t from, std::size_t to) {
+  auto const wall = static_cast<std::size_t>(contacts.candidates[from].wall);
+  WallPose const& pose = scene.moving.poses()[wall];
+  TriangleSurface const& surface = scene.walls.surface(wall);
+  double const path = contacts.path[w] + pose.path;
+  Vec3 const centre = in_frame_of(pose, g.centre);
+  batch.touched.clear();
+  for (std::size_t c = from; c < to; ++c) {
+    WallCandidate& candidate = contacts.candidates[c];
+    if (candidate.awake_at > path) continue;
+    TriangleContact const contact = contact_with(surface, candidate.triangle(), centre);
+    double const gap = std::abs(contact.distance) - g.radius;
+    if (gap < 0)
+      batch.touched.push_back(contact);
+    else
+      candidate.awake_at = path + gap * (1 - 1e-9);
+  }
+  if (batch.touched.empty()) return;
+  merge_contacts(surface, batch.touched);
+  std::int64_t const first = contacts.candidates[from].key - contacts.candidates[from].triangle();
+  for (TriangleContact const& t : batch.touched)
+    append(batch, g, t.distance, t.normal, wall, scene, friction,
+           inherited(contacts, w, first + t.triangle, batch.touched, surface));
+}
+
+void touch_primitive(WallContacts& contacts, std::size_t w, WallBatch& batch, GrainView const& g,
+                     WallScene const& scene, double friction, WallCandidate& candidate) {
+  auto const wall = static_cast<std::size_t>(candidate.wall);
+  WallPose const& pose = scene.moving.poses()[wall];
+  double const path = contacts.path[w] + pose.path;
+  if (candidate.awake_at > path) return;
+  WallPoint const near = nearest(scene.walls, wall, scene.width, in_frame_of(pose, g.centre));
+  if (near.distance < g.radius)
+    append(batch, g, near.distance, {near.nx, near.ny, near.nz}, wall, scene, friction,
+           own_spring(contacts, w, candidate.key));
+  else
+    candidate.awake_at = path + (near.distance - g.radius) * (1 - 1e-9);
+}
+
+/// Adds force and torque of the contacts of one grain, from `at` on in the batch, and keeps their springs.
+double take_over(WallContacts& c, std::size_t w, WallBatch& batch, WallScene const& scene, double diameter,
+                 std::size_t& at) {
+  double worst = 0;
+  c.force[w] = c.torque[w] = {};
+  for (std::int32_t s = 0; s < c.spring_count[w]; ++s, ++at) {
+    c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)] = {batch.key[at], batch.spring_x[at], batch.spring_y[at],
+                                                                  batch.spring_z[at]};
+    double const force[3] = {batch.fx[at], batch.fy[at], batch.fz[at]},
+                 torque[3] = {batch.tx[at], batch.ty[at], batch.tz[at]};
+    for (std::size_t d = 0; d < 3; ++d) c.force[w][d] += force[d], c.torque[w][d] += torque[d];
+    worst = std::max(worst, batch.overlap[at] / diameter);
+    auto const wall = static_cast<std::size_t>(batch.wall[at]);
+    if (!scene.moving.moves(wall)) continue;
+    batch.force[wall][0] -= std::llround(batch.fx[at] / wall_force_unit);
+    batch.force[wall][1] -= std::llround(batch.fz[at] / wall_force_unit);
+  }
+  return worst;
 }
 
 }  // namespace
 
+double distance_to(WallCandidate const& candidate, WallScene const& scene, Vec3 const& centre) {
+  auto const wall = static_cast<std::size_t>(candidate.wall);
+  Vec3 const p = in_frame_of(pose_of(candidate, scene), centre);
+  if (!is_triangle(candidate.key)) return nearest(scene.walls, wall, scene.width, p).distance;
+  return std::abs(contact_with(scene.walls.surface(wall), candidate.triangle(), p).distance);
+}
+
+MeshGrids grids_of(Walls const& walls, double cell) {
+  MeshGrids grids;
+  for (std::size_t wall = walls.primitives(); wall < walls.size(); ++wall)
+    grids.emplace_back(walls.surface(wall), cell);
+  return grids;
+}
+
 void WallBatch::reserve(std::size_t contacts) {
-  for (auto* v : {&overlap, &radius, &inverse_mass, &nx,       &ny,       &nz,       &vx, &vy, &vz, &sx, &sy, &sz,
+  for (auto* v : {&overlap, &radius, &inverse_mass, &friction, &nx,       &ny,       &nz, &vx, &vy, &vz, &sx, &sy, &sz,
                   &wx,      &wy,     &wz,           &spring_x, &spring_y, &spring_z, &fx, &fy, &fz, &tx, &ty, &tz})
     v->reserve(contacts);
   key.reserve(contacts);
+  wall.reserve(contacts);
   touched.reserve(256);
 }
 
-void build_wall_contacts(WallContacts& contacts, Grains const& g, Walls const& walls, TriangleGrid const& grid,
-                         double skin, double time, std::vector<ContactSpring> const& springs) {
+void build_wall_contacts(WallContacts& contacts, Grains const& g, WallScene const& scene, MeshGrids const& grids,
+                         double skin, std::vector<ContactSpring> const& springs) {
   WallContacts& c = contacts;
-  for (auto* list : {&c.grain, &c.blocks, &c.spring_count}) list->clear();
-  c.triangles.clear();
+  for (auto* list : {&c.grain, &c.spring_count}) list->clear();
+  c.candidates.clear();
   c.springs.clear();
-  for (auto* begin : {&c.block_begin, &c.triangle_begin, &c.spring_begin}) begin->assign(1, 0);
+  for (auto* begin : {&c.begin, &c.spring_begin}) begin->assign(1, 0);
   std::vector<std::int32_t> triangles;
   for (std::size_t i = 0; i < g.owned; ++i) {
-    std::vector<std::int32_t> const blocks = blocks_near(walls, g, i, skin, time);
-    double const reach = g[i].radius + skin;
-    grid.find(centre(g, i), reach, triangles);
-    std::erase_if(triangles, [&](std::int32_t t) {
-      return std::abs(contact_with(walls.substrate, t, centre(g, i)).distance) >= reach;
-    });
-    if (blocks.empty() && triangles.empty()) continue;
+    std::size_t const before = c.candidates.size();
+    find_candidates(scene, grids, view_of(g, i), skin, triangles, c.candidates);
+    if (c.candidates.size() == before) continue;
     c.grain.push_back(static_cast<std::int32_t>(i));
-    c.blocks.insert(c.blocks.end(), blocks.begin(), blocks.end());
-    for (std::int32_t const t : triangles) c.triangles.push_back({t, 0});
-    c.block_begin.push_back(static_cast<std::int32_t>(c.blocks.size()));
-    c.triangle_begin.push_back(static_cast<std::int32_t>(c.triangles.size()));
+    c.begin.push_back(static_cast<std::int32_t>(c.candidates.size()));
 
     // wall keys are >= 0, so key_b <= -1: the springs of this grain lie before (id, 0)
     auto old = std::ranges::lower_bound(springs, g.id[i], {}, &ContactSpring::key_a);
@@ -166,7 +277,7 @@ void build_wall_contacts(WallContacts& contacts, Grains const& g, Walls const& w
     for (; old != springs.end() && old->key_a == g.id[i] && old->key_b < 0; ++old, ++count)
       c.springs.push_back({wall_key_of(old->key_b), old->spring[0], old->spring[1], old->spring[2]});
     c.spring_count.push_back(count);
-    std::size_t const room = std::max(blocks.size() + triangles.size(), static_cast<std::size_t>(count));
+    std::size_t const room = std::max(c.candidates.size() - before, static_cast<std::size_t>(count));
     c.springs.resize(static_cast<std::size_t>(c.spring_begin.back()) + room);
     c.spring_begin.push_back(static_cast<std::int32_t>(c.springs.size()));
   }
@@ -186,52 +297,43 @@ void append_springs(WallContacts const& c, Grains const& g, std::vector<LocalSpr
   }
 }
 
-bool is_near_moving_wall(WallContacts const& c, std::size_t w, Walls const& walls) {
-  auto const begin = c.blocks.begin();
-  return std::any_of(begin + c.block_begin[w], begin + c.block_begin[w + 1],
-                     [&](std::int32_t block) { return walls.blocks[static_cast<std::size_t>(block)].velocity != 0; });
+bool is_near_moving_wall(WallContacts const& c, std::size_t w, MovingWalls const& moving) {
+  auto const begin = c.candidates.begin();
+  return std::any_of(begin + c.begin[w], begin + c.begin[w + 1], [&](WallCandidate const& candidate) {
+    return moving.moves(static_cast<std::size_t>(candidate.wall));
+  });
 }
 
-WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, Walls const& walls,
-                          ContactLaw const& law, double time, double dt, std::size_t from, std::size_t to) {
+double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, WallScene const& scene,
+                      ContactLaw const& law, double dt, std::size_t from, std::size_t to) {
+  if (from == to) return 0;
   WallContacts& c = contacts;
-  WallReport report;
   clear(batch);
   for (std::size_t w = from; w < to; ++w) {
-    auto const i = static_cast<std::size_t>(c.grain[w]);
+    GrainView const grain = view_of(g, static_cast<std::size_t>(c.grain[w]));
     auto const already = batch.key.size();
-    find_touched(c, w, g, walls.substrate, batch.touched);
-    for (std::int32_t b = c.block_begin[w]; b < c.block_begin[w + 1]; ++b) {
-      std::int32_t const key = c.blocks[static_cast<std::size_t>(b)];
-      RoundedBlock const& block = walls.blocks[static_cast<std::size_t>(key)];
-      WallPoint const near = nearest(block, block.velocity * time, g[i].x, g[i].z);
-      if (near.distance < g[i].radius)
-        append(batch, g, i, near.distance, {near.nx, 0, near.nz}, block.velocity,
-               inherited(c, w, key, batch.touched, walls.substrate));
+    auto const end = static_cast<std::size_t>(c.begin[w + 1]);
+    for (auto k = static_cast<std::size_t>(c.begin[w]); k < end;) {
+      if (!is_triangle(c.candidates[k].key)) {
+        touch_primitive(c, w, batch, grain, scene, law.sliding_friction, c.candidates[k++]);
+        continue;
+      }
+      std::size_t last = k;
+      while (last < end && c.candidates[last].wall == c.candidates[k].wall) ++last;
+      touch_mesh(c, w, batch, grain, scene, law.sliding_friction, k, last);
+      k = last;
     }
-    for (TriangleContact const& t : batch.touched)
-      append(batch, g, i, t.distance, t.normal, 0,
-             inherited(c, w, first_triangle_key + t.triangle, batch.touched, walls.substrate));
     c.spring_count[w] = static_cast<std::int32_t>(batch.key.size() - already);
   }
   act_on(batch, law, dt);
+  batch.force.resize(scene.walls.size());
+  double worst = 0;
   std::size_t at = 0;
   for (std::size_t w = from; w < to; ++w) {
-    c.force[w] = c.torque[w] = {};
-    double const diameter = 2 * g[static_cast<std::size_t>(c.grain[w])].radius;
-    for (std::int32_t s = 0; s < c.spring_count[w]; ++s, ++at) {
-      c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)] = {batch.key[at], batch.spring_x[at],
-                                                                    batch.spring_y[at], batch.spring_z[at]};
-      double const force[3] = {batch.fx[at], batch.fy[at], batch.fz[at]},
-                   torque[3] = {batch.tx[at], batch.ty[at], batch.tz[at]};
-      for (std::size_t d = 0; d < 3; ++d) c.force[w][d] += force[d], c.torque[w][d] += torque[d];
-      bool const moves =
-          batch.key[at] < first_triangle_key && walls.blocks[static_cast<std::size_t>(batch.key[at])].velocity != 0;
-      report.worst_overlap = std::max(report.worst_overlap, batch.overlap[at] / diameter);
-      if (moves) report.pushed_back -= std::llround(batch.fx[at] * 1e18);
-    }
+    double const diameter = 2 * view_of(g, static_cast<std::size_t>(c.grain[w])).radius;
+    worst = std::max(worst, take_over(c, w, batch, scene, diameter, at));
   }
-  return report;
+  return worst;
 }
 
 }  // namespace layerloop::dem

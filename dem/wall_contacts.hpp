@@ -5,15 +5,20 @@
 
 #include "dem/contact_law.hpp"
 #include "dem/grains.hpp"
+#include "dem/moving_walls.hpp"
 #include "dem/triangle_contact.hpp"
 #include "dem/walls.hpp"
 
 namespace layerloop::dem {
 
-/// A triangle within the skin of a grain. It is left alone until the grain has travelled far enough to touch it.
-struct TriangleCandidate {
-  std::int32_t triangle;
-  double awake_at;  ///< path length of the grain [m]
+/// A wall or triangle within the skin of a grain. It is left alone until both together have travelled far enough to
+/// touch.
+struct WallCandidate {
+  std::int64_t key;   ///< wall key
+  std::int32_t wall;  ///< number of the wall
+  double awake_at;    ///< paths of grain and wall, summed [m]
+
+  std::int32_t triangle() const { return static_cast<std::int32_t>((key - first_triangle_key) % keys_a_mesh); }
 };
 
 /// A contact between a grain and a wall, kept while they touch.
@@ -25,12 +30,10 @@ struct WallSpring {
 /// Grains near walls, what they may touch, and their springs. Grains are in ascending order of row; the arrays of
 /// contacts hold room for every candidate, so that a step allocates nothing and loses no wall.
 struct WallContacts {
-  std::vector<std::int32_t> grain;        ///< row
-  std::vector<double> path;               ///< travelled since the rebuild, an upper bound [m]
-  std::vector<std::int32_t> block_begin;  ///< of each grain in `blocks`
-  std::vector<std::int32_t> blocks;
-  std::vector<std::int32_t> triangle_begin;  ///< of each grain in `triangles`
-  std::vector<TriangleCandidate> triangles;
+  std::vector<std::int32_t> grain;         ///< row
+  std::vector<double> path;                ///< travelled since the rebuild, an upper bound [m]
+  std::vector<std::int32_t> begin;         ///< of each grain in `candidates`
+  std::vector<WallCandidate> candidates;   ///< of each grain ascending by key: those of one mesh together
   std::vector<std::int32_t> spring_begin;  ///< room of each grain in `springs`
   std::vector<std::int32_t> spring_count;
   std::vector<WallSpring> springs;
@@ -39,31 +42,42 @@ struct WallContacts {
 
 /// Contacts of one thread's grains in one step, as arrays. Room for all candidates.
 struct WallBatch {
-  std::vector<double> overlap, radius, inverse_mass, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x, spring_y,
-      spring_z;
+  std::vector<double> overlap, radius, inverse_mass, friction, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x,
+      spring_y, spring_z;
   std::vector<double> fx, fy, fz, tx, ty, tz;
   std::vector<std::int64_t> key;
+  std::vector<std::int32_t> wall;
   std::vector<TriangleContact> touched;  ///< scratch of one grain
+  WallForces force;                      ///< on walls that move, until they are taken over
 
   void reserve(std::size_t contacts);
 };
 
-struct WallReport {
-  double worst_overlap = 0;      ///< over the grain's diameter
-  std::int64_t pushed_back = 0;  ///< x force of grains on moving blocks, in units of 1e-18 N: sums exactly in any order
+/// Walls as the contacts see them.
+struct WallScene {
+  Walls const& walls;
+  MovingWalls const& moving;
+  double width;  ///< period along y [m]
 };
 
-/// \param shift  how far moving blocks have gone is velocity * time
-void build_wall_contacts(WallContacts& contacts, Grains const& grains, Walls const& walls, TriangleGrid const& grid,
-                         double skin, double time, std::vector<ContactSpring> const& springs);
+/// Triangles of the substrate and of the meshes by place, in their own frames.
+using MeshGrids = std::vector<TriangleGrid>;
+MeshGrids grids_of(Walls const& walls, double cell);
+
+void build_wall_contacts(WallContacts& contacts, Grains const& grains, WallScene const& scene, MeshGrids const& grids,
+                         double skin, std::vector<ContactSpring> const& springs);
 
 void append_springs(WallContacts const& contacts, Grains const& grains, std::vector<LocalSpring>& springs);
 
 /// Is a wall that moves among the candidates of grain `w` of the list?
-bool is_near_moving_wall(WallContacts const& contacts, std::size_t w, Walls const& walls);
+bool is_near_moving_wall(WallContacts const& contacts, std::size_t w, MovingWalls const& moving);
 
 /// Contacts of the grains [from, to) of the list. No allocation once the batch has grown.
-WallReport evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& grains, Walls const& walls,
-                          ContactLaw const& law, double time, double dt, std::size_t from, std::size_t to);
+/// \return largest overlap over the grain's diameter
+double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& grains, WallScene const& scene,
+                      ContactLaw const& law, double dt, std::size_t from, std::size_t to);
+
+/// Distance of a grain's centre from a candidate, now [m].
+double distance_to(WallCandidate const& candidate, WallScene const& scene, Vec3 const& centre);
 
 }  // namespace layerloop::dem

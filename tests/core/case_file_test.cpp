@@ -117,7 +117,8 @@ TEST(CaseFile, ResolvedCaseReadsBackEqual) {
 TEST(CaseFile, ResolvedCaseHoldsEveryKey) {
   std::string const resolved =
       resolved_toml(read_case(example, {"laser.absorptivity=0.4", "optics.refractive_index=[3, 5]",
-                                        "machine.frozen_zone=[6e-4, 8e-4]", "laser.spot_definition=FWHM"}));
+                                        "machine.frozen_zone=[6e-4, 8e-4]", "machine.blade_friction=0.3",
+                                        "laser.spot_definition=FWHM"}));
   for (CaseKey const& row : case_schema()) {
     EXPECT_NE(resolved.find("\n" + row.key + " = "), std::string::npos) << name_of(row);
   }

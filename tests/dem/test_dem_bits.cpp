@@ -22,7 +22,7 @@ TEST(Bits, DoNotDependOnThreads) {
 TEST(Bits, DoNotDependOnAStopInBetween) {
   omp_set_num_threads(1);
   Pile pile(160);
-  pile.rig.walls.blocks[1].velocity = 0;
+  pile.rig.walls.blocks[1].motion.velocity = 0;
   PowderBed const through = pile.run(alone(), 26000);
   EXPECT_GT(through.contacts.size(), 60U);
   EXPECT_EQ(differences(through, pile.run(alone(), 26000, 11617)), 0);

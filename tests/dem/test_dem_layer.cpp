@@ -138,8 +138,8 @@ TEST(Plate, LoweringMakesNoOverlap) {
     }
     for (RoundedBlock block : rig.walls.blocks) {
       block.z0 = -1;
-      double const was = nearest(block, 0, before.x[i], before.z[i]).distance - before.radius[i];
-      double const is = nearest(block, 0, after.x[i], after.z[i]).distance - after.radius[i];
+      double const was = nearest(block, before.x[i], before.z[i]).distance - before.radius[i];
+      double const is = nearest(block, after.x[i], after.z[i]).distance - after.radius[i];
       EXPECT_GE(is, std::min(0.0, was) - 1e-18) << block.name;
     }
   }

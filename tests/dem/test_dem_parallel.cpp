@@ -43,6 +43,24 @@ TEST(Bits, DoNotDependOnRanks) {
   }
 }
 
+TEST(Bits, DoNotDependOnRanksWhenAWallYields) {
+  omp_set_num_threads(1);
+  Pile pile(160);
+  pile.bed = pile.run(alone(), 24000);
+  pile.rig.walls.blocks[1].x0 += 40e-6;
+  pile.rig.walls.blocks[1].x1 += 40e-6;
+  WallMotion& pusher = pile.rig.walls.blocks[1].motion;
+  pusher.suspension = Suspension{1e-9, 5, 1e-5};
+  pusher.amplitude = 1e-6;
+  pusher.frequency = 2e3;
+  PowderBed const single = on_ranks(1, pile, 1500), four = on_ranks(4, pile, 1500);
+  if (Communicator().rank() == 0) {
+    EXPECT_EQ(differences(single, four), 0);
+    pusher.suspension.reset();
+    EXPECT_GT(differences(single, pile.run(alone(), 1500)), 0);  // it did yield
+  }
+}
+
 TEST(Guards, ThrowTheSameOnEveryRank) {
   Pile pile(200);
   pile.rig.z_range[0] = -55e-6;  // above the floor

@@ -13,7 +13,7 @@ constexpr double radius = 12.5e-6;
 TEST(RoundedBlock, DistanceAndNormal) {
   RoundedBlock const block{"block", 0, 100e-6, 0, 50e-6, 10e-6, 0};
   auto const expect = [&](double x, double z, double distance, double nx, double nz) {
-    WallPoint const near = nearest(block, 0, x, z);
+    WallPoint const near = nearest(block, x, z);
     EXPECT_NEAR(near.distance, distance, 1e-18);
     EXPECT_NEAR(near.nx, nx, 1e-12);
     EXPECT_NEAR(near.nz, nz, 1e-12);
@@ -24,7 +24,7 @@ TEST(RoundedBlock, DistanceAndNormal) {
   expect(110e-6, 60e-6, 20e-6 * std::sqrt(2.0) - 10e-6, s, s);  // corner: centre of the arc at (90, 40) um
   expect(50e-6, 45e-6, -5e-6, 0, 1);                            // inside
   expect(20e-6, 25e-6, -20e-6, -1, 0);
-  EXPECT_NEAR(nearest(block, 30e-6, 25e-6, 20e-6).distance, 5e-6, 1e-18);  // moved by 30 um
+  EXPECT_NEAR(nearest(block, 25e-6 - 30e-6, 20e-6).distance, 5e-6, 1e-18);  // moved by 30 um
 }
 
 /// Velocity after an impact on a wall.
