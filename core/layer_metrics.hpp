@@ -9,12 +9,13 @@ namespace layerloop {
 /// A spread layer over a slice of the deposition zone along x and the full width. Not a number: nothing to measure.
 /// Definitions: dem/layer_definitions.cpp, and written into every summary.
 struct ZoneMetrics {
-  double effective_thickness = 0;       ///< ELT [m]
-  double real_effective_thickness = 0;  ///< RELT [m]
-  double void_layer = 0;                ///< VL [m]
+  double effective_thickness = 0, effective_thickness_u_num = 0;            ///< ELT [m]
+  double real_effective_thickness = 0, real_effective_thickness_u_num = 0;  ///< RELT [m]
+  double void_layer = 0;                                                    ///< VL [m]
   double volume_fraction_nominal = 0;
-  double volume_fraction_real = 0;  ///< relative density of the slice
+  double volume_fraction_real = 0, volume_fraction_real_u_num = 0;  ///< relative density of the slice
   double surface_coverage = 0;
+  double roughness_sa_u_num = 0;
   double roughness_sa = 0, roughness_sq = 0, roughness_sz = 0;       ///< [m]
   double d10 = 0, d50 = 0, d90 = 0;                                  ///< by volume [m]
   double d10_number = 0, d50_number = 0, d90_number = 0;             ///< by number [m]

@@ -8,6 +8,10 @@
 #include "dem/machine_rig.hpp"
 
 namespace layerloop::coupling {
+namespace {
+constexpr double memory_per_grain = 1000;  // with its neighbours and springs, about [bytes]
+constexpr double memory_per_cell = 150;    // of the heat grid, about [bytes]
+}  // namespace
 
 std::int64_t dose_count(Case const& checked) {
   MachineSettings const& machine = checked.machine;
@@ -23,6 +27,7 @@ Cost estimate_cost(Case const& checked) {
   cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose_count(checked);
   double const sweep = dem::blade_stroke(machine) / machine.recoating_speed;
   cost.time_steps = checked.run.layers * std::llround(sweep / dem::motion_of(checked).time_step);
+  cost.memory = memory_per_grain * static_cast<double>(cost.particles);
   if (!checked.has_laser()) return cost;
 
   auto const tracks = static_cast<std::int64_t>(scan_path(checked, 1).size());
@@ -32,8 +37,7 @@ Cost estimate_cost(Case const& checked) {
   double const height =
       checked.heat.substrate_depth + static_cast<double>(checked.run.layers) * machine.layer_thickness;
   cost.cells = std::llround(length * machine.width * height / std::pow(checked.heat.cell_size, 3));
-  // A grain with its neighbours and springs takes about 1 kB, a cell of the heat grid about 150 B.
-  cost.memory = 1e3 * static_cast<double>(cost.particles) + 150.0 * static_cast<double>(cost.cells);
+  cost.memory += memory_per_cell * static_cast<double>(cost.cells);
   return cost;
 }
 

@@ -39,12 +39,16 @@ void members(Of<AreaMap> auto& map, Visit&& visit) {
 template <class Visit>
 void zone_members(auto& zone, Visit&& visit) {
   visit("effective_thickness", zone.effective_thickness);
+  visit("effective_thickness_u_num", zone.effective_thickness_u_num);
   visit("real_effective_thickness", zone.real_effective_thickness);
+  visit("real_effective_thickness_u_num", zone.real_effective_thickness_u_num);
   visit("void_layer", zone.void_layer);
   visit("volume_fraction_nominal", zone.volume_fraction_nominal);
   visit("volume_fraction_real", zone.volume_fraction_real);
+  visit("volume_fraction_real_u_num", zone.volume_fraction_real_u_num);
   visit("surface_coverage", zone.surface_coverage);
   visit("roughness_sa", zone.roughness_sa);
+  visit("roughness_sa_u_num", zone.roughness_sa_u_num);
   visit("roughness_sq", zone.roughness_sq);
   visit("roughness_sz", zone.roughness_sz);
   visit("d10", zone.d10);
@@ -254,8 +258,10 @@ void add_laser_keys(json& entry, LayerRecord const& layer) {
 json bins_summary(LayerRecord const& layer) {
   json bins = encode(layer.metrics.bins);
   for (json& bin : bins) {
-    bin["relative_density"] = bin["volume_fraction_real"];
-    bin.erase("volume_fraction_real");
+    for (std::string const ending : {"", "_u_num"}) {
+      bin["relative_density" + ending] = bin["volume_fraction_real" + ending];
+      bin.erase("volume_fraction_real" + ending);
+    }
   }
   return bins;
 }

@@ -51,6 +51,9 @@ std::map<std::string, std::string> zone_definitions() {
       {"lacey_index",
        "Lacey's mixing index over the bins of the share by number of coarse grains (at least the median diameter by "
        "number of the fed powder): 1 mixed at random, 0 apart; null when all grains are alike."},
+      {"*_u_num",
+       "Of thicknesses, volume fraction and roughness: standard error by the finite number of pixels, from the scatter "
+       "between the four grids of every second pixel. Exact figures (coverage, sizes, counts) have none."},
       {"bins",
        "run.bins equal slices of the whole deposition zone along x, x at their centre. relative_density is "
        "volume_fraction_real of the slice; every other quantity is defined as for the layer, over the slice."},

@@ -1,6 +1,7 @@
 #include "dem/layer_metrics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -84,27 +85,75 @@ std::vector<double> radii_of(PowderBed const& bed, std::vector<std::size_t> cons
   return radii;
 }
 
+/// What the pixels of a zone say of its surface.
+struct SurfaceFigures {
+  double height = 0, rise = 0, sa = 0, sq = 0, sz = 0;
+};
+
+SurfaceFigures surface_figures(std::vector<double> const& before, std::vector<double> const& after) {
+  SurfaceFigures figures{mean(after), 0, 0, 0, 0};
+  if (after.empty()) return {nothing, nothing, nothing, nothing, nothing};
+  figures.rise = figures.height - mean(before);
+  double const count = static_cast<double>(after.size());
+  double square = 0;
+  for (double const z : after) {
+    figures.sa += std::abs(z - figures.height) / count;
+    square += (z - figures.height) * (z - figures.height) / count;
+  }
+  figures.sq = std::sqrt(square);
+  figures.sz = std::ranges::max(after) - std::ranges::min(after);
+  return figures;
+}
+
+/// Standard error of figures from pixels: scatter between the four grids of every second pixel along x and y.
+class PixelScatter {
+ public:
+  /// \param ny  pixels of a column, which follow one another
+  PixelScatter(std::vector<double> const& before, std::vector<double> const& after, std::int32_t ny) {
+    auto const rows = static_cast<std::size_t>(ny);
+    for (std::size_t part = 0; part < grids_.size(); ++part) {
+      std::vector<double> low, high;
+      for (std::size_t p = 0; p < after.size(); ++p) {
+        if (p / rows % 2 + 2 * (p % rows % 2) != part) continue;
+        low.push_back(before[p]);
+        high.push_back(after[p]);
+      }
+      grids_[part] = surface_figures(low, high);
+    }
+  }
+
+  double of(double SurfaceFigures::*figure) const {
+    double average = 0, square = 0;
+    for (SurfaceFigures const& grid : grids_) average += grid.*figure / 4;
+    for (SurfaceFigures const& grid : grids_) square += (grid.*figure - average) * (grid.*figure - average);
+    return std::sqrt(square / 3 / 4);
+  }
+
+ private:
+  std::array<SurfaceFigures, 4> grids_;
+};
+
 void measure_surface(ZoneMetrics& zone, SpreadLayer const& layer, Span span, double added_volume) {
   MachineSettings const& m = layer.checked.machine;
-  std::vector<double> const heights = heights_in(layer.after, span);
-  double const height = mean(heights), height_before = mean(heights_in(layer.before, span));
+  std::vector<double> const before = heights_in(layer.before, span), after = heights_in(layer.after, span);
+  SurfaceFigures const surface = surface_figures(before, after);
+  PixelScatter const scatter(before, after, layer.after.ny);
   double const area = (span.to - span.from) * m.width;
-  zone.effective_thickness = height + m.layer_thickness - m.blade_clearance;
-  zone.real_effective_thickness = height - height_before;
-  zone.void_layer = m.blade_clearance - height_before;
+  bool const is_there = surface.rise > no_thickness;
+  zone.effective_thickness = surface.height + m.layer_thickness - m.blade_clearance;
+  zone.effective_thickness_u_num = scatter.of(&SurfaceFigures::height);
+  zone.real_effective_thickness = surface.rise;
+  zone.real_effective_thickness_u_num = scatter.of(&SurfaceFigures::rise);
+  zone.void_layer = m.blade_clearance - (surface.height - surface.rise);
   zone.volume_fraction_nominal = added_volume / (area * m.layer_thickness);
-  zone.volume_fraction_real =
-      zone.real_effective_thickness > no_thickness ? added_volume / (area * zone.real_effective_thickness) : nothing;
+  zone.volume_fraction_real = is_there ? added_volume / (area * surface.rise) : nothing;
+  zone.volume_fraction_real_u_num =
+      std::abs(zone.volume_fraction_real) * zone.real_effective_thickness_u_num / surface.rise;
   zone.surface_coverage = area_between(layer.rim, span.from, span.to) / area;
-  double absolute = 0, square = 0;
-  for (double const z : heights) {
-    absolute += std::abs(z - height);
-    square += (z - height) * (z - height);
-  }
-  double const count = static_cast<double>(heights.size());
-  zone.roughness_sa = absolute / count;
-  zone.roughness_sq = std::sqrt(square / count);
-  zone.roughness_sz = heights.empty() ? nothing : std::ranges::max(heights) - std::ranges::min(heights);
+  zone.roughness_sa = surface.sa;
+  zone.roughness_sa_u_num = scatter.of(&SurfaceFigures::sa);
+  zone.roughness_sq = surface.sq;
+  zone.roughness_sz = surface.sz;
 }
 
 void measure_grains(ZoneMetrics& zone, SpreadLayer const& layer, Span span) {

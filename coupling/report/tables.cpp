@@ -47,13 +47,22 @@ std::vector<Row> powder_rows() {
   using L = LayerRecord const&;
   return {{"grains in the layer", "", [](L l) { return count(l.grains_in_layer); }},
           {"grains nipped by the blade", "", [](L l) { return count(l.grains_nipped); }},
-          {"effective thickness", "&micro;m", [](L l) { return um(l.metrics.effective_thickness); }},
-          {"real effective thickness", "&micro;m", [](L l) { return um(l.metrics.real_effective_thickness); }},
+          {"effective thickness", "&micro;m",
+           [](L l) {
+             return with_uncertainty(1e6 * l.metrics.effective_thickness, 1e6 * l.metrics.effective_thickness_u_num);
+           }},
+          {"real effective thickness", "&micro;m",
+           [](L l) {
+             return with_uncertainty(1e6 * l.metrics.real_effective_thickness,
+                                     1e6 * l.metrics.real_effective_thickness_u_num);
+           }},
           {"void layer", "&micro;m", [](L l) { return um(l.metrics.void_layer); }},
           {"volume fraction, nominal", "", [](L l) { return significant(l.metrics.volume_fraction_nominal); }},
-          {"volume fraction, real", "", [](L l) { return significant(l.metrics.volume_fraction_real); }},
+          {"volume fraction, real", "",
+           [](L l) { return with_uncertainty(l.metrics.volume_fraction_real, l.metrics.volume_fraction_real_u_num); }},
           {"surface coverage", "", [](L l) { return significant(l.metrics.surface_coverage); }},
-          {"roughness Sa", "&micro;m", [](L l) { return um(l.metrics.roughness_sa); }},
+          {"roughness Sa", "&micro;m",
+           [](L l) { return with_uncertainty(1e6 * l.metrics.roughness_sa, 1e6 * l.metrics.roughness_sa_u_num); }},
           {"roughness Sq", "&micro;m", [](L l) { return um(l.metrics.roughness_sq); }},
           {"roughness Sz", "&micro;m", [](L l) { return um(l.metrics.roughness_sz); }},
           {"D10, D50, D90 by volume", "&micro;m",

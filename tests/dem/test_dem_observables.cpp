@@ -231,6 +231,50 @@ TEST(Reservoir, OfASquareLattice) {
   EXPECT_NEAR(reservoir.volume, 100 * 4.0 / 3 * pi * R * R * R, 1e-20);
 }
 
+TEST(PixelScatter, IsTheSizeOfTheErrorOfThickness) {
+  // One row of three hemispheres in every bin, anywhere in it: mean height 3 pi R^2 / area * 5/3 R.
+  Case c = small_case();
+  double const R = 20e-6, pitch = 60e-6;
+  int const rows = 40;
+  c.machine.deposition_length = rows * pitch;
+  c.machine.width = 120e-6;
+  c.run.bins = rows;
+  MachineSettings const& m = c.machine;
+  double const relt = 3 * pi * R * R / (pitch * m.width) * 5.0 / 3.0 * R;
+  PowderBed bed;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      auto const shift = uniform4(8, RandomStream::grain_position, static_cast<std::uint64_t>(3 * i + j));
+      double const x = m.deposition_begin() + i * pitch + R + shift[0] * (pitch - 2 * R);
+      bed.add(3 * i + j,
+              {x, (j + uniform4(9, RandomStream::grain_position, static_cast<std::uint64_t>(i))[0]) * 2 * R,
+               R - m.layer_thickness},
+              R, 0);
+    }
+  }
+  for (std::int32_t const pixels : {24, 60}) {
+    double const h = m.width / pixels;
+    auto const nx = static_cast<std::int32_t>(std::lround(m.deposition_length / h));
+    HeightMap const plate{m.deposition_begin(),
+                          0,
+                          h,
+                          nx,
+                          pixels,
+                          std::vector<double>(static_cast<std::size_t>(nx * pixels), -m.layer_thickness)};
+    LayerMetrics const metrics = measure_layer(bed, plate, layer_base({}, plate, c), c);
+    double error = 0, claimed = 0;
+    for (LayerBin const& bin : metrics.bins) {
+      double const u = bin.real_effective_thickness_u_num, e = bin.real_effective_thickness - relt;
+      error += e * e / rows;
+      claimed += u * u / rows;
+      EXPECT_NEAR(bin.volume_fraction_real_u_num / bin.volume_fraction_real, u / bin.real_effective_thickness, 1e-12);
+    }
+    EXPECT_LT(std::sqrt(error), 2 * std::sqrt(claimed)) << pixels;
+    EXPECT_GT(std::sqrt(error), 0.2 * std::sqrt(claimed)) << pixels;
+    EXPECT_LT(std::sqrt(claimed), 0.03 * relt) << pixels;
+  }
+}
+
 // What eq. 14 of the thesis and its kin say of layers in which nothing moves between the strokes. The surface is put
 // there by hand: each stroke fills the same share of the void.
 class Layers : public testing::Test {
