@@ -64,7 +64,8 @@ std::int64_t Simulation::look() {
   if (seen.overlap > overlap_limit) fail(find_overlap(seen.overlap));
   if (seen.overlap > nip_limit && moving_walls_.fastest() > 0) take_out_nipped();
 
-  double const dt = motion_.time_step, step = std::sqrt(seen.step_squared), speed = std::max(step / dt, moving_walls_.fastest());
+  double const dt = motion_.time_step, step = std::sqrt(seen.step_squared),
+               speed = std::max(step / dt, moving_walls_.fastest());
   double const moved = std::max(std::sqrt(seen.displacement_squared), moving_walls_.travelled());
   bool const contact_too_short = speed > 0 && hertz_contact_time(smallest_radius_, motion_.density, speed,
                                                                  motion_.contact) < least_steps_a_contact * dt;

@@ -63,20 +63,17 @@ void Simulation::scatter(PowderBed const& bed) {
   grains_.clear();
   first_springs_ = bed.contacts;
   steps_ = next_sink_check_ = next_sleep_check_ = rebuilds_ = nipped_ = 0;
-<<<<<<< HEAD
-  largest_overlap_ = blade_force_ = 0;
-  phases_ = {};
-=======
   largest_overlap_ = 0;
   moving_walls_.start();
->>>>>>> part-c
+  phases_ = {};
   watch_ = {};
   if (bed.size() == 0) throw InputError("there is no grain to move (the bed is empty) raise powder.particles");
   auto const [smallest, largest] = std::ranges::minmax(bed.radius);
   smallest_radius_ = smallest;
   largest_radius_ = largest;
   skin_ = skin_over_smallest_radius * smallest;
-  reach_ = std::max(reach_gap(motion_.between_grains, largest), reach_gap(motion_.at_walls, largest));
+  wall_reach_ = reach_gap(motion_.at_walls, largest);
+  reach_ = std::max(reach_gap(motion_.between_grains, largest), wall_reach_);
   if (rig_.width < 4 * largest + 2 * (skin_ + reach_)) {
     throw InputError(
         fmt::format("the bed is {:.3g} um wide (a grain of {:.3g} um would meet itself around the period) "
@@ -210,11 +207,7 @@ void Simulation::choose_near_pairs(Share& share, double half_gap) {
   share.actions.assign(share.near.slots(), {});
 }
 
-<<<<<<< HEAD
-void Simulation::evaluate(Share& share, std::size_t chunk, double now, PhaseClock& clock, PhaseTimes& times) {
-=======
-void Simulation::evaluate(Share& share, std::size_t chunk) {
->>>>>>> part-c
+void Simulation::evaluate(Share& share, std::size_t chunk, PhaseClock& clock, PhaseTimes& times) {
   std::size_t const from = share.near.from + chunk * NearPairs::rows_a_chunk,
                     to = std::min(from + NearPairs::rows_a_chunk, share.near.to);
   double const dt = motion_.time_step;
@@ -225,17 +218,10 @@ void Simulation::evaluate(Share& share, std::size_t chunk) {
     return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
                                     near_walls.begin());
   };
-<<<<<<< HEAD
-  WallReport const report = evaluate_walls(wall_contacts_, share.batch, grains_, rig_.walls, motion_.at_walls, now, dt,
-                                           entry(from), entry(to));
-  share.watch.overlap = std::max({share.watch.overlap, overlap, report.worst_overlap});
-  share.pushed_back += report.pushed_back;
-  clock.add_to(times.walls);
-=======
-  double const wall_overlap = evaluate_walls(wall_contacts_, share.batch, grains_, scene(), motion_.at_walls, dt,
-                                             entry(from), entry(to));
+  double const wall_overlap =
+      evaluate_walls(wall_contacts_, share.batch, grains_, scene(), motion_.at_walls, dt, entry(from), entry(to));
   share.watch.overlap = std::max({share.watch.overlap, overlap, wall_overlap});
->>>>>>> part-c
+  clock.add_to(times.walls);
 }
 
 void Simulation::run_steps(std::int64_t count) {
@@ -258,11 +244,7 @@ void Simulation::run_steps(std::int64_t count) {
       own.held.resize(waits - own.near.from);
       double fastest = 0;
       for (std::size_t chunk = 0; chunk < own.near.chunks(); ++chunk) {
-<<<<<<< HEAD
-        evaluate(own, chunk, now, clock, times);
-=======
-        evaluate(own, chunk);
->>>>>>> part-c
+        evaluate(own, chunk, clock, times);
         std::size_t const from = own.near.from + chunk * NearPairs::rows_a_chunk,
                           to = std::min(from + NearPairs::rows_a_chunk, own.near.to),
                           held = std::clamp(waits, from, to);
@@ -274,14 +256,11 @@ void Simulation::run_steps(std::int64_t count) {
         clock.add_to(times.motion);
       }
       barrier.wait(threads);
-<<<<<<< HEAD
       clock.add_to(times.communication);
-=======
       if (number == 0) {
         double const dt = motion_.time_step;
         moving_walls_.advance(static_cast<double>(steps_ + s + 1) * dt, dt, wall_forces);
       }
->>>>>>> part-c
       add_far_actions(number, own.near.from, waits, own.held.data());
       fastest = std::max(fastest, move(own, own.near.from, waits, own.held.data()));
       own.fastest_squared = fastest;
@@ -374,10 +353,10 @@ double Simulation::move(Share& own, std::size_t from, std::size_t to, GrainActio
     }
     GrainState& g = grains_[i];
     double const per_mass = dt * g.inverse_mass, per_inertia = dt * g.inverse_inertia;
-    double const slowed = 1 + drag * g.radius * g.inverse_mass;  // 1 without gas: changes no bit then
-    g.vx = (g.vx + (force[0] * per_mass + gravity.x())) / slowed;
-    g.vy = (g.vy + (force[1] * per_mass + gravity.y())) / slowed;
-    g.vz = (g.vz + (force[2] * per_mass + gravity.z())) / slowed;
+    double const kept = drag > 0 ? 1 / (1 + drag * g.radius * g.inverse_mass) : 1.0;
+    g.vx = kept * (g.vx + (force[0] * per_mass + gravity.x()));
+    g.vy = kept * (g.vy + (force[1] * per_mass + gravity.y()));
+    g.vz = kept * (g.vz + (force[2] * per_mass + gravity.z()));
     g.wx += torque[0] * per_inertia;
     g.wy += torque[1] * per_inertia;
     g.wz += torque[2] * per_inertia;

@@ -134,11 +134,7 @@ class Simulation {
   void share_out(int shares);
   void choose_near_pairs(Share& share, double half_gap);
   double suitable_half_gap(double fastest_squared) const;
-<<<<<<< HEAD
-  void evaluate(Share& share, std::size_t chunk, double now, PhaseClock& clock, PhaseTimes& times);
-=======
-  void evaluate(Share& share, std::size_t chunk);
->>>>>>> part-c
+  void evaluate(Share& share, std::size_t chunk, PhaseClock& clock, PhaseTimes& times);
   /// Takes what was done to rows [from, to) out of the ring, for later.
   void hold(Share& share, std::size_t from, std::size_t to);
   /// Adds what waits behind the rings of shares [0, number] for rows [from, to) to actions[row - from].
@@ -157,7 +153,7 @@ class Simulation {
   Fault find_overlap(double seen) const;
   Fault find_fastest() const;
   bool is_inside(std::size_t row) const;
-  WallScene scene() const { return {rig_.walls, moving_walls_, rig_.width}; }
+  WallScene scene() const { return {rig_.walls, moving_walls_, rig_.width, laws_.form, wall_reach_}; }
 
   Motion motion_;
   Rig rig_;
@@ -171,24 +167,17 @@ class Simulation {
   ActionUnit unit_;
   Neighbours neighbours_;
   std::vector<Share> shares_;  ///< one a thread
-  double half_gap_ = 0, way_since_choice_ = 0, ghosts_fastest_squared_ = 0,
-         reach_ = 0;  ///< near pairs hold while no grain has gone farther than half_gap_ [m]
+  double half_gap_ = 0, way_since_choice_ = 0, ghosts_fastest_squared_ = 0, reach_ = 0,
+         wall_reach_ = 0;  ///< near pairs hold while no grain has gone farther than half_gap_ [m]
   WallContacts wall_contacts_;
   std::vector<std::int32_t> wall_entry_;      ///< of each owned grain in wall_contacts_; -1: none
   std::vector<ContactSpring> first_springs_;  ///< of the scattered bed, until the first rebuild
   std::vector<double> x_built_, y_built_, z_built_;
   Watch watch_;
-<<<<<<< HEAD
-  double time_built_ = 0, skin_ = 0, smallest_radius_ = 0, largest_radius_ = 0, fastest_wall_ = 0;
-  double largest_overlap_ = 0, blade_force_ = 0;
-  std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, pushed_back_ = 0, next_sink_check_ = 0,
-               next_sleep_check_ = 0;
-  PhaseTimes phases_;
-=======
   double skin_ = 0, smallest_radius_ = 0, largest_radius_ = 0;
   double largest_overlap_ = 0;
   std::int64_t steps_ = 0, grain_count_ = 0, rebuilds_ = 0, nipped_ = 0, next_sink_check_ = 0, next_sleep_check_ = 0;
->>>>>>> part-c
+  PhaseTimes phases_;
   ThreadTeam team_;
 };
 

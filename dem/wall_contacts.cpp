@@ -40,10 +40,12 @@ bool share_corner(TriangleSurface const& surface, std::int32_t a, std::int32_t b
   return std::ranges::find_first_of(first, second) != first.end();
 }
 
+WallSpring new_spring(std::int64_t key) { return {.key = key, .x = 0, .y = 0, .z = 0, .is_old = false}; }
+
 WallSpring own_spring(WallContacts const& contacts, std::size_t w, std::int64_t key) {
   auto const begin = contacts.springs.begin() + contacts.spring_begin[w], end = begin + contacts.spring_count[w];
   auto const own = std::find_if(begin, end, [&](WallSpring const& s) { return s.key == key; });
-  return own != end ? *own : WallSpring{key, 0, 0, 0};
+  return own != end ? *own : new_spring(key);
 }
 
 /// The spring that a contact with a triangle goes on with: its own, or, where a grain rolls from one triangle to the
@@ -61,8 +63,10 @@ WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t k
   for (auto s = begin; s != end; ++s) {
     if (was_left_for_this(*s) && (!left || s->key < left->key)) left = &*s;
   }
-  if (left) return {key, left->x, left->y, left->z};
-  return {key, 0, 0, 0};
+  if (!left) return new_spring(key);
+  WallSpring taken = *left;
+  taken.key = key;
+  return taken;
 }
 
 /// Velocity of a wall's surface where it touches, and spin of the wall about y.
@@ -81,7 +85,7 @@ WallSurface surface_of(WallScene const& scene, std::size_t wall, Vec3 const& nor
 
 void append(WallBatch& b, GrainView const& g, double distance, Vec3 const& n, std::size_t wall, WallScene const& scene,
             double friction, WallSpring const& spring) {
-  double const overlap = g.radius - distance, arm = g.radius - 0.5 * overlap;
+  double const overlap = g.radius - distance, arm = g.radius - 0.5 * std::max(overlap, 0.0);
   WallSurface const surface = surface_of(scene, wall, n);
   b.overlap.push_back(overlap);
   b.radius.push_back(g.radius);
@@ -102,19 +106,28 @@ void append(WallBatch& b, GrainView const& g, double distance, Vec3 const& n, st
   b.spring_x.push_back(spring.x);
   b.spring_y.push_back(spring.y);
   b.spring_z.push_back(spring.z);
+  b.turn_x.push_back(spring.turn_x);
+  b.turn_y.push_back(spring.turn_y);
+  b.turn_z.push_back(spring.turn_z);
+  double const close = g.radius * g.radius / distance;  // the image of a charge in a plane lies as deep behind it
+  b.closeness.push_back(scene.form.reach == Reach::beyond ? close * close : 0.0);
+  b.touches.push_back(spring.is_old ? 1 : 0);
   b.key.push_back(spring.key);
   b.wall.push_back(static_cast<std::int32_t>(wall));
 }
 
 void clear(WallBatch& b) {
-  for (auto* v : {&b.overlap, &b.radius, &b.inverse_mass, &b.friction, &b.nx, &b.ny, &b.nz, &b.vx, &b.vy, &b.vz, &b.sx,
-                  &b.sy, &b.sz, &b.wx, &b.wy, &b.wz, &b.spring_x, &b.spring_y, &b.spring_z})
+  for (auto* v : {&b.overlap,  &b.radius,   &b.inverse_mass, &b.friction, &b.nx,     &b.ny,     &b.nz,       &b.vx,
+                  &b.vy,       &b.vz,       &b.sx,           &b.sy,       &b.sz,     &b.wx,     &b.wy,       &b.wz,
+                  &b.spring_x, &b.spring_y, &b.spring_z,     &b.turn_x,   &b.turn_y, &b.turn_z, &b.closeness})
     v->clear();
+  b.touches.clear();
   b.key.clear();
   b.wall.clear();
 }
 
 /// All contacts of the batch at once.
+template <Reach reach, RollingModel rolling>
 void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   std::size_t const n = b.overlap.size();
   for (auto* v : {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz}) v->resize(n);
@@ -124,28 +137,54 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   double const *sx = b.sx.data(), *sy = b.sy.data(), *sz = b.sz.data();
   double const *wx = b.wx.data(), *wy = b.wy.data(), *wz = b.wz.data();
   double *ux = b.spring_x.data(), *uy = b.spring_y.data(), *uz = b.spring_z.data();
+  double *ox = b.turn_x.data(), *oy = b.turn_y.data(), *oz = b.turn_z.data();
+  double const* closeness = b.closeness.data();
+  std::int64_t* touches = b.touches.data();
   double *fx = b.fx.data(), *fy = b.fy.data(), *fz = b.fz.data(), *tx = b.tx.data(), *ty = b.ty.data(),
          *tz = b.tz.data();
   ContactLaw const law_here = law;
 #pragma omp simd
   for (std::size_t c = 0; c < n; ++c) {
-    double const arm = radius[c] - 0.5 * overlap[c];
+    double const arm = radius[c] - 0.5 * (overlap[c] > 0.0 ? overlap[c] : 0.0);
     ContactLaw law_of_wall = law_here;
     law_of_wall.sliding_friction = friction[c];
-    ContactAction const a = act<Reach::touch, RollingModel::cdt>(
-        law_of_wall,
-        {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c], vx[c], vy[c], vz[c], sx[c], sy[c], sz[c],
-         wx[c],      wy[c],     wz[c],           ux[c], uy[c], uz[c], 0,     0,     0,     0,     false},
+    ContactAction const a = act<reach, rolling>(
+        law_of_wall, {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c],        vx[c],          vy[c],
+                      vz[c],      sx[c],     sy[c],           sz[c], wx[c], wy[c],        wz[c],          ux[c],
+                      uy[c],      uz[c],     ox[c],           oy[c], oz[c], closeness[c], touches[c] != 0},
         dt);
     ux[c] = a.spring_x;
     uy[c] = a.spring_y;
     uz[c] = a.spring_z;
+    ox[c] = a.turn_x;
+    oy[c] = a.turn_y;
+    oz[c] = a.turn_z;
+    touches[c] = a.touches ? 1 : 0;
     fx[c] = a.fx;
     fy[c] = a.fy;
     fz[c] = a.fz;
     tx[c] = -arm * a.qx - a.rx;
     ty[c] = -arm * a.qy - a.ry;
     tz[c] = -arm * a.qz - a.rz;
+  }
+}
+
+template <Reach reach>
+void act_on(WallBatch& b, ContactLaw const& law, RollingModel rolling, double dt) {
+  if (rolling == RollingModel::cdt)
+    act_on<reach, RollingModel::cdt>(b, law, dt);
+  else
+    act_on<reach, RollingModel::epsd2>(b, law, dt);
+}
+
+void act_on(WallBatch& b, ContactLaw const& law, LawForm const& form, double dt) {
+  switch (form.reach) {
+    case Reach::touch:
+      return act_on<Reach::touch>(b, law, form.rolling, dt);
+    case Reach::tear_off:
+      return act_on<Reach::tear_off>(b, law, form.rolling, dt);
+    case Reach::beyond:
+      return act_on<Reach::beyond>(b, law, form.rolling, dt);
   }
 }
 
@@ -183,7 +222,7 @@ void touch_mesh(WallContacts& contacts, std::size_t w, WallBatch& batch, GrainVi
     WallCandidate& candidate = contacts.candidates[c];
     if (candidate.awake_at > path) continue;
     TriangleContact const contact = contact_with(surface, candidate.triangle(), centre);
-    double const gap = std::abs(contact.distance) - g.radius;
+    double const gap = std::abs(contact.distance) - g.radius - scene.reach_gap;
     if (gap < 0)
       batch.touched.push_back(contact);
     else
@@ -204,11 +243,12 @@ void touch_primitive(WallContacts& contacts, std::size_t w, WallBatch& batch, Gr
   double const path = contacts.path[w] + pose.path;
   if (candidate.awake_at > path) return;
   WallPoint const near = nearest(scene.walls, wall, scene.width, in_frame_of(pose, g.centre));
-  if (near.distance < g.radius)
+  double const gap = near.distance - g.radius - scene.reach_gap;
+  if (gap < 0)
     append(batch, g, near.distance, {near.nx, near.ny, near.nz}, wall, scene, friction,
            own_spring(contacts, w, candidate.key));
   else
-    candidate.awake_at = path + (near.distance - g.radius) * (1 - 1e-9);
+    candidate.awake_at = path + gap * (1 - 1e-9);
 }
 
 /// Adds force and torque of the contacts of one grain, from `at` on in the batch, and keeps their springs.
@@ -216,9 +256,14 @@ double take_over(WallContacts& c, std::size_t w, WallBatch& batch, WallScene con
                  std::size_t& at) {
   double worst = 0;
   c.force[w] = c.torque[w] = {};
-  for (std::int32_t s = 0; s < c.spring_count[w]; ++s, ++at) {
-    c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)] = {batch.key[at], batch.spring_x[at], batch.spring_y[at],
-                                                                  batch.spring_z[at]};
+  std::int32_t const contacts = c.spring_count[w];
+  c.spring_count[w] = 0;
+  for (std::int32_t s = 0; s < contacts; ++s, ++at) {
+    if (batch.touches[at]) {
+      c.springs[static_cast<std::size_t>(c.spring_begin[w] + c.spring_count[w]++)] = {
+          batch.key[at],    batch.spring_x[at], batch.spring_y[at], batch.spring_z[at],
+          batch.turn_x[at], batch.turn_y[at],   batch.turn_z[at]};
+    }
     double const force[3] = {batch.fx[at], batch.fy[at], batch.fz[at]},
                  torque[3] = {batch.tx[at], batch.ty[at], batch.tz[at]};
     for (std::size_t d = 0; d < 3; ++d) c.force[w][d] += force[d], c.torque[w][d] += torque[d];
@@ -248,11 +293,13 @@ MeshGrids grids_of(Walls const& walls, double cell) {
 }
 
 void WallBatch::reserve(std::size_t contacts) {
-  for (auto* v : {&overlap, &radius, &inverse_mass, &friction, &nx,       &ny,       &nz, &vx, &vy, &vz, &sx, &sy, &sz,
-                  &wx,      &wy,     &wz,           &spring_x, &spring_y, &spring_z, &fx, &fy, &fz, &tx, &ty, &tz})
+  for (auto* v : {&overlap, &radius, &inverse_mass, &friction, &nx, &ny, &nz,       &vx,       &vy,       &vz,
+                  &sx,      &sy,     &sz,           &wx,       &wy, &wz, &spring_x, &spring_y, &spring_z, &turn_x,
+                  &turn_y,  &turn_z, &closeness,    &fx,       &fy, &fz, &tx,       &ty,       &tz})
     v->reserve(contacts);
   key.reserve(contacts);
   wall.reserve(contacts);
+  touches.reserve(contacts);
   touched.reserve(256);
 }
 
@@ -275,7 +322,8 @@ void build_wall_contacts(WallContacts& contacts, Grains const& g, WallScene cons
     auto old = std::ranges::lower_bound(springs, g.id[i], {}, &ContactSpring::key_a);
     std::int32_t count = 0;
     for (; old != springs.end() && old->key_a == g.id[i] && old->key_b < 0; ++old, ++count)
-      c.springs.push_back({wall_key_of(old->key_b), old->spring[0], old->spring[1], old->spring[2]});
+      c.springs.push_back({wall_key_of(old->key_b), old->spring[0], old->spring[1], old->spring[2], old->turn[0],
+                           old->turn[1], old->turn[2]});
     c.spring_count.push_back(count);
     std::size_t const room = std::max(c.candidates.size() - before, static_cast<std::size_t>(count));
     c.springs.resize(static_cast<std::size_t>(c.spring_begin.back()) + room);
@@ -290,7 +338,10 @@ void append_springs(WallContacts const& c, Grains const& g, std::vector<LocalSpr
   for (std::size_t w = 0; w < c.grain.size(); ++w) {
     for (std::int32_t s = 0; s < c.spring_count[w]; ++s) {
       WallSpring const& spring = c.springs[static_cast<std::size_t>(c.spring_begin[w] + s)];
-      springs.push_back({{g.id[static_cast<std::size_t>(c.grain[w])], -1 - spring.key, {spring.x, spring.y, spring.z}},
+      springs.push_back({{g.id[static_cast<std::size_t>(c.grain[w])],
+                          -1 - spring.key,
+                          {spring.x, spring.y, spring.z},
+                          {spring.turn_x, spring.turn_y, spring.turn_z}},
                          c.grain[w],
                          -1});
     }
@@ -310,7 +361,9 @@ double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g,
   WallContacts& c = contacts;
   clear(batch);
   for (std::size_t w = from; w < to; ++w) {
-    GrainView const grain = view_of(g, static_cast<std::size_t>(c.grain[w]));
+    auto const row = static_cast<std::size_t>(c.grain[w]);
+    if (is_asleep(g.quiet[row])) continue;
+    GrainView const grain = view_of(g, row);
     auto const already = batch.key.size();
     auto const end = static_cast<std::size_t>(c.begin[w + 1]);
     for (auto k = static_cast<std::size_t>(c.begin[w]); k < end;) {
@@ -325,12 +378,14 @@ double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g,
     }
     c.spring_count[w] = static_cast<std::int32_t>(batch.key.size() - already);
   }
-  act_on(batch, law, dt);
+  act_on(batch, law, scene.form, dt);
   batch.force.resize(scene.walls.size());
   double worst = 0;
   std::size_t at = 0;
   for (std::size_t w = from; w < to; ++w) {
-    double const diameter = 2 * view_of(g, static_cast<std::size_t>(c.grain[w])).radius;
+    auto const row = static_cast<std::size_t>(c.grain[w]);
+    if (is_asleep(g.quiet[row])) continue;
+    double const diameter = 2 * g[row].radius;
     worst = std::max(worst, take_over(c, w, batch, scene, diameter, at));
   }
   return worst;

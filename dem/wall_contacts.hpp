@@ -23,8 +23,10 @@ struct WallCandidate {
 
 /// A contact between a grain and a wall, kept while they touch.
 struct WallSpring {
-  std::int64_t key;  ///< wall key
-  double x, y, z;    ///< [m]
+  std::int64_t key;                           ///< wall key
+  double x, y, z;                             ///< [m]
+  double turn_x = 0, turn_y = 0, turn_z = 0;  ///< rolling angle that is stored [rad]
+  bool is_old = true;                         ///< they touched at the step before
 };
 
 /// Grains near walls, what they may touch, and their springs. Grains are in ascending order of row; the arrays of
@@ -43,10 +45,11 @@ struct WallContacts {
 /// Contacts of one thread's grains in one step, as arrays. Room for all candidates.
 struct WallBatch {
   std::vector<double> overlap, radius, inverse_mass, friction, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x,
-      spring_y, spring_z;
+      spring_y, spring_z, turn_x, turn_y, turn_z, closeness;
   std::vector<double> fx, fy, fz, tx, ty, tz;
   std::vector<std::int64_t> key;
   std::vector<std::int32_t> wall;
+  std::vector<std::int64_t> touches;     ///< before, then after the step
   std::vector<TriangleContact> touched;  ///< scratch of one grain
   WallForces force;                      ///< on walls that move, until they are taken over
 
@@ -57,7 +60,9 @@ struct WallBatch {
 struct WallScene {
   Walls const& walls;
   MovingWalls const& moving;
-  double width;  ///< period along y [m]
+  double width;          ///< period along y [m]
+  LawForm form = {};     ///< of contacts with walls
+  double reach_gap = 0;  ///< up to which something acts beyond touch [m]
 };
 
 /// Triangles of the substrate and of the meshes by place, in their own frames.
