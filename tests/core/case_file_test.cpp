@@ -114,6 +114,33 @@ TEST(CaseFile, ResolvedCaseReadsBackEqual) {
   }
 }
 
+TEST(CaseFile, SpreadingNeedsNoLaser) {
+  std::filesystem::path const path = source_dir / "tests/loop/spread_small.toml";
+  EXPECT_THROW(read_case(path, {}), InputError);
+  Case const c = read_case(path, {}, Process::spreading);
+  EXPECT_FALSE(c.has_laser());
+  EXPECT_FALSE(c.has_part());
+  EXPECT_EQ(c.run.replicates, 3);
+  EXPECT_DOUBLE_EQ(c.heat.cell_size, 5e-6);  // divides 200 um and 130 um
+  EXPECT_DOUBLE_EQ(read_case(path, {"machine.width=126 um"}, Process::spreading).heat.cell_size, 2e-6);
+  EXPECT_EQ(read_case(path, {}, std::nullopt).process, Process::spreading);
+  EXPECT_EQ(read_case(example, {}, std::nullopt).process, Process::melting);
+  EXPECT_TRUE(read_case(example, {}, Process::spreading).heat.cell_size > 0);
+  try {
+    read_case(path, {"machine.width=130.0007 um"}, Process::spreading);
+    FAIL() << "no cell divides such a width";
+  } catch (InputError const& fault) {
+    EXPECT_NE(std::string(fault.what()).find("cell_size"), std::string::npos) << fault.what();
+  }
+}
+
+TEST(CaseFile, BedTakesTheFeedsPlaceAndIsSeenFromTheCase) {
+  std::filesystem::path const path = source_dir / "tests/loop/spread_small.toml";
+  EXPECT_THROW(read_case(path, {"powder.particles=0"}, Process::spreading), InputError);
+  Case const c = read_case(path, {"powder.particles=0", "powder.bed=bed.csv"}, Process::spreading);
+  EXPECT_EQ(c.powder.bed, (source_dir / "tests/loop/bed.csv").lexically_normal().string());
+}
+
 TEST(CaseFile, ResolvedCaseHoldsEveryKey) {
   std::string const resolved =
       resolved_toml(read_case(example, {"laser.absorptivity=0.4", "optics.refractive_index=[3, 5]",
