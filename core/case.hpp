@@ -57,6 +57,7 @@ struct ContactSettings {
   double charge_density = 0;           ///< effect electrostatic_charge [C/m^2]
   double gas_viscosity = 0;            ///< effect gas_drag [Pa s]
   double wall_friction = 0;
+  double wall_cohesion = 1;  ///< effect wall_cohesion: of the energy between grains
   WallCohesionArea wall_cohesion_area = WallCohesionArea::liggghts;
   CoulombOn coulomb_on = CoulombOn::repulsive;
   double time_step_fraction = 0;  ///< of the Rayleigh time of the smallest grain
@@ -73,15 +74,16 @@ struct MachineSettings {
   RecoaterKind recoater = RecoaterKind::blade;
   double blade_width = 0, edge_radius = 0, edge_exponent = 2, blade_clearance = 0;
   std::optional<double> blade_friction;  ///< of any recoater; else that of the walls
-  double blade_stiffness = 0;  ///< for each metre of width [N/m^2]
-  double blade_mass = 0;       ///< for each metre of width [kg/m]
-  double blade_damping = 0;    ///< share of critical damping
+  double blade_stiffness = 0;            ///< for each metre of width [N/m^2]
+  double blade_mass = 0;                 ///< for each metre of width [kg/m]
+  double blade_damping = 0;              ///< share of critical damping
   double roller_diameter = 0;
-  double roller_spin = 0;           ///< surface speed over recoating speed; positive: counter-rotating
+  double roller_spin = 0;               ///< surface speed over recoating speed; positive: counter-rotating
   double platform_edge_radius = 20e-6;  ///< of the platforms' edges [m]
   EndWall end_wall = EndWall::flush;
   BladeCollision blade_collision = BladeCollision::stop;
-  std::string substrate;  ///< STL or PLY of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
+  std::string
+      substrate;  ///< STL or PLY of metal on the plate before layer 1 (m; z = 0 on the plate); empty: bare plate
   double plate_roughness = 0, plate_correlation_length = 0;  ///< rms height and length over which it persists [m]
   double plate_grains = 0;                                   ///< share of the plate that half-sunk grains cover
   std::optional<std::array<double, 2>>
@@ -134,6 +136,7 @@ struct RunSettings {
   std::int64_t layers = 0;
   std::int64_t bins = 15;       ///< slices of the deposition zone along x in which a layer is measured
   std::int64_t replicates = 1;  ///< runs with seeds seed, seed + 1, ...
+  bool grains_sleep = false;
   bool checkpoint = true;
   bool pictures = true;
   bool unsafe_time_step = false;

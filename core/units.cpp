@@ -57,6 +57,8 @@ constexpr auto units = std::to_array<Unit>({
     {"GPa", D::pressure, 1e9L},
     {"J/m2", D::surface_energy, 1},
     {"mJ/m2", D::surface_energy, 1e-3L},
+    {"N/m", D::surface_energy, 1},
+    {"mN/m", D::surface_energy, 1e-3L},
     {"J/m3", D::energy_density, 1},
     {"kJ/m3", D::energy_density, 1e3L},
     {"MJ/m3", D::energy_density, 1e6L},
@@ -88,6 +90,10 @@ constexpr auto units = std::to_array<Unit>({
     {"J/g", D::specific_energy, 1e3L},
     {"kg/mol", D::molar_mass, 1},
     {"g/mol", D::molar_mass, 1e-3L},
+    {"Pas", D::viscosity, 1},
+    {"mPas", D::viscosity, 1e-3L},
+    {"C/m2", D::charge_density, 1},
+    {"uC/m2", D::charge_density, 1e-6L},
     {"Hz", D::frequency, 1},
     {"kHz", D::frequency, 1e3L},
     {"kg/m", D::linear_density, 1},
@@ -153,6 +159,10 @@ std::string_view name(Dimension dimension) {
       return "an energy per mass";
     case D::molar_mass:
       return "a molar mass";
+    case D::viscosity:
+      return "a viscosity";
+    case D::charge_density:
+      return "a charge per area";
     case D::frequency:
       return "a frequency";
     case D::linear_density:

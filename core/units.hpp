@@ -24,7 +24,9 @@ enum class Dimension {
   specific_energy,
   molar_mass,
   frequency,
-  linear_density
+  linear_density,
+  viscosity,
+  charge_density
 };
 
 std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty for none

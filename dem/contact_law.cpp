@@ -65,7 +65,10 @@ ContactLaw grain_law(ContactSettings const& contact) {
 
 ContactLaw wall_law(ContactSettings const& contact) {
   double const area = contact.wall_cohesion_area == WallCohesionArea::eq6 ? 4 * pi : 2 * pi;
-  ContactLaw law = law_between(contact, contact.wall_friction, area);
+  ContactSettings at_wall = contact;
+  at_wall.cohesion_energy_density *= contact.wall_cohesion;
+  at_wall.surface_energy *= contact.wall_cohesion;
+  ContactLaw law = law_between(at_wall, contact.wall_friction, area);
   law.charge = pi * contact.charge_density * contact.charge_density / vacuum_permittivity;  // image in a conductor
   return law;
 }

@@ -107,9 +107,9 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   PowderBed const before = bed;
   double const smallest = *std::ranges::min_element(bed.radius);
   outcome.time_step = motion.time_step;
-  outcome.bond_number = bond_number(median_radius(bed), motion.density, checked.contact);
+  outcome.bond_number = bond_number(median_radius(bed), motion.density, motion.contact);
   outcome.steps_per_contact =
-      hertz_contact_time(smallest, motion.density, machine.recoating_speed, checked.contact) / motion.time_step;
+      hertz_contact_time(smallest, motion.density, machine.recoating_speed, motion.contact) / motion.time_step;
 
   Simulation stroke(motion, machine_rig(checked, substrate, bed, Tools::moving_recoater), communicator);
   stroke.scatter(bed);

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/grain_size.hpp"
 #include "core/rayleigh_time.hpp"
+#include "dem/contact_effects.hpp"
 #include "dem/step_barrier.hpp"
 
 namespace layerloop::dem {
@@ -42,12 +43,13 @@ void take_from_ring(GrainAction* ring, std::size_t from, std::size_t to, GrainAc
 
 Motion motion_of(Case const& checked) {
   double const smallest = std::ranges::min(fed_powder(checked).diameters) / 2;
-  return {.between_grains = grain_law(checked.contact),
-          .at_walls = wall_law(checked.contact),
-          .contact = checked.contact,
+  ContactSettings const contact = contact_with_effects(checked);
+  return {.between_grains = grain_law(contact),
+          .at_walls = wall_law(contact),
+          .contact = contact,
           .density = checked.material.density,
-          .time_step =
-              checked.contact.time_step_fraction * rayleigh_time(smallest, checked.material.density, checked.contact)};
+          .time_step = contact.time_step_fraction * rayleigh_time(smallest, checked.material.density, contact),
+          .grains_sleep = checked.run.grains_sleep};
 }
 
 Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
