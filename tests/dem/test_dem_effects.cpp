@@ -50,6 +50,7 @@ TEST(ContactEffects, WithoutCohesionIsTheCaseWithoutCohesion) {
   EXPECT_EQ(differences(null, spread(effects)), 0);
   Pile pile(120);
   pile.checked.contact.cohesion = Cohesion::none;
+  pile.rig.width = 200e-6;
   EXPECT_EQ(differences(null, pile.run(alone(), 6000)), 0);
 }
 
