@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "dem/multisection.hpp"
+
 namespace layerloop::dem {
 namespace {
 /// Sends to_rank[r] to rank r.
@@ -42,14 +44,6 @@ std::vector<T> joined(std::vector<std::vector<T>> const& parts) {
   return all;
 }
 
-/// Borders of slices with equal numbers of grains.
-std::vector<double> equal_cuts(std::vector<double> x, std::size_t slices, double period) {
-  std::ranges::sort(x);
-  std::vector<double> cuts(slices + 1, period);
-  cuts.front() = std::isfinite(period) ? 0.0 : -period;
-  for (std::size_t r = 1; r < slices && !x.empty(); ++r) cuts[r] = x[r * x.size() / slices];
-  return cuts;
-}
 }  // namespace
 
 Decomposition::Decomposition(Communicator const& communicator, double period)
@@ -60,8 +54,8 @@ Decomposition::Decomposition(Communicator const& communicator, double period)
   MPI_Comm_free(&node);
 }
 
-void Decomposition::redistribute(std::vector<GrainRecord>& grains, std::vector<LocalSpring> const& old_springs,
-                                 std::vector<ContactSpring>& springs) {
+void Decomposition::redistribute(std::vector<GrainRecord>& grains, std::vector<std::int64_t> const& loads,
+                                 std::vector<LocalSpring> const& old_springs, std::vector<ContactSpring>& springs) {
   springs.clear();
   if (size() == 1) {
     for (LocalSpring const& old : old_springs) springs.push_back(old.spring);
@@ -70,7 +64,8 @@ void Decomposition::redistribute(std::vector<GrainRecord>& grains, std::vector<L
   auto const ranks = static_cast<std::size_t>(size());
   std::vector<double> x(grains.size());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = grains[i].state.x;
-  cuts_ = equal_cuts(communicator_.all_gather(x), ranks, period_);
+  bool const open = !std::isfinite(period_);
+  cuts_ = equal_loads(x, loads, ranks, open ? -period_ : 0.0, period_, communicator_);
 
   std::vector<std::size_t> target(grains.size());
   std::vector<std::vector<GrainRecord>> grains_to(ranks);

@@ -7,7 +7,7 @@
 
 namespace layerloop::dem {
 
-/// Grains shared out over the ranks in slices along x with equal numbers of grains, cut anew at every rebuild.
+/// Grains shared out over the ranks in slices along x with equal loads, cut anew at every rebuild.
 class Decomposition {
  public:
   /// \param period  along x; infinite: open [m]
@@ -15,8 +15,9 @@ class Decomposition {
 
   /// Sends every grain, and the springs of its contacts, to the rank whose slice holds it. Collective.
   /// \param springs  in: those of this rank's grains; out: those of its new grains, sorted
-  void redistribute(std::vector<GrainRecord>& grains, std::vector<LocalSpring> const& old_springs,
-                    std::vector<ContactSpring>& springs);
+  /// \param loads  work of each grain, in pairs
+  void redistribute(std::vector<GrainRecord>& grains, std::vector<std::int64_t> const& loads,
+                    std::vector<LocalSpring> const& old_springs, std::vector<ContactSpring>& springs);
 
   /// Appends copies of other ranks' grains that lie within `reach` of this rank's slice. Collective.
   void add_ghosts(Grains& grains, double reach);

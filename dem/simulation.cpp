@@ -105,6 +105,15 @@ void Simulation::append_all_springs(std::vector<LocalSpring>& springs) const {
   append_springs(wall_contacts_, grains_, springs);
 }
 
+std::vector<std::int64_t> Simulation::loads() const {
+  std::vector<std::int64_t> load(grains_.owned, 1);
+  if (neighbours_.begin.size() != grains_.owned + 1) return load;  // before the first list
+  for (std::size_t i = 0; i < grains_.owned; ++i) {
+    if (!is_asleep(grains_.quiet[i])) load[i] += 2 + neighbours_.begin[i + 1] - neighbours_.begin[i];
+  }
+  return load;
+}
+
 void Simulation::rebuild() {
   PhaseClock clock;
   std::vector<LocalSpring> local;
@@ -113,7 +122,7 @@ void Simulation::rebuild() {
   for (std::size_t i = 0; i < records.size(); ++i) records[i] = grains_.record(i);
   bool const first = rebuilds_++ == 0;  // springs come from the bed then, and every rank has them all
   std::vector<ContactSpring> springs;
-  decomposition_.redistribute(records, local, springs);
+  decomposition_.redistribute(records, loads(), local, springs);
   if (first) springs = std::move(first_springs_);
   std::erase_if(records, [](GrainRecord const& r) { return r.leaves != 0; });
 

@@ -142,6 +142,7 @@ class Simulation {
   /// Moves rows [from, to) on by one step. \return largest speed squared
   double move(Share& share, std::size_t from, std::size_t to, GrainAction const* actions);
   double fastest_ghost_squared() const;
+  std::vector<std::int64_t> loads() const;  ///< of the owned grains, in pairs
   void append_all_springs(std::vector<LocalSpring>& springs) const;
   std::int64_t look();
   void check_sleep();
