@@ -21,17 +21,16 @@ struct OneBed {
   static constexpr std::size_t count = 9;
 };
 
-dem::Motion motion_with(Case const& checked, ContactParameters const& p) {
-  dem::Motion motion = dem::motion_of(checked);
-  ContactSettings contact = checked.contact;
+dem::Motion motion_with(Case checked, ContactParameters const& p) {
+  ContactSettings& contact = checked.contact;
   contact.sliding_friction = p.sliding_friction;
   contact.rolling_friction = p.rolling_friction;
-  contact.cohesion_energy_density = p.cohesion_energy_density;
-  motion.contact = contact;
-  motion.between_grains = dem::grain_law(contact);
   contact.wall_friction = p.wall_friction;
   contact.cohesion_energy_density = p.wall_cohesion;
-  motion.at_walls = dem::wall_law(contact);
+  dem::ContactLaw const at_walls = dem::motion_of(checked).at_walls;
+  contact.cohesion_energy_density = p.cohesion_energy_density;
+  dem::Motion motion = dem::motion_of(checked);
+  motion.at_walls = at_walls;
   return motion;
 }
 

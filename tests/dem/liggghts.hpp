@@ -115,7 +115,7 @@ inline std::vector<PowderBed> Liggghts::run() const {
   return frames;
 }
 
-/// The same in this program: beds at the same steps. Velocities are half a step later than the positions.
+/// The same in this program: beds at the same steps. Velocities are those half a step before the positions.
 inline std::vector<PowderBed> run_here(Liggghts const& reference) {
   Rig rig = empty_space();
   rig.width = reference.width;
@@ -124,7 +124,7 @@ inline std::vector<PowderBed> run_here(Liggghts const& reference) {
   Motion const motion{grain_law(reference.contact), wall_law(reference.contact), reference.contact, density,
                       reference.time_step};
   PowderBed bed = reference.bed;
-  for (double& vz : bed.vz) vz -= 0.5 * reference.gravity * reference.time_step;
+  for (double& vz : bed.vz) vz += 0.5 * reference.gravity * reference.time_step;  // half a step before
   Simulation simulation(motion, rig, alone());
   simulation.scatter(bed);
   std::vector<PowderBed> frames{reference.bed};
