@@ -142,10 +142,9 @@ TEST(CaseFile, BedTakesTheFeedsPlaceAndIsSeenFromTheCase) {
 }
 
 TEST(CaseFile, ResolvedCaseHoldsEveryKey) {
-  std::string const resolved =
-      resolved_toml(read_case(example, {"laser.absorptivity=0.4", "optics.refractive_index=[3, 5]",
-                                        "machine.frozen_zone=[6e-4, 8e-4]", "machine.blade_friction=0.3",
-                                        "laser.spot_definition=FWHM"}));
+  std::string const resolved = resolved_toml(read_case(
+      example, {"laser.absorptivity=0.4", "optics.refractive_index=[3, 5]", "machine.frozen_zone=[6e-4, 8e-4]",
+                "machine.blade_friction=0.3", "contact.surface_energy=1e-4", "laser.spot_definition=FWHM"}));
   for (CaseKey const& row : case_schema()) {
     EXPECT_NE(resolved.find("\n" + row.key + " = "), std::string::npos) << name_of(row);
   }
