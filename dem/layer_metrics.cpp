@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grain_size.hpp"
 #include "dem/coordination.hpp"
 #include "dem/disc_union.hpp"
 #include "dem/grain_sizes.hpp"
@@ -187,11 +188,11 @@ double segregation(SpreadLayer const& layer) {
     return diameter_quantile(radii_of(layer.bed, added_in(layer, span)), 0.5, Weight::volume);
   };
   return (d50({inside.from, inside.from + third}) - d50({inside.to - third, inside.to})) /
-         fed_diameter_quantile(layer.checked.powder, 0.5, Weight::volume);
+         fed_diameter_quantile(fed_powder(layer.checked), 0.5, Weight::volume);
 }
 
 double lacey(SpreadLayer const& layer, std::vector<Span> const& bins) {
-  double const median = fed_diameter_quantile(layer.checked.powder, 0.5, Weight::number);
+  double const median = fed_diameter_quantile(fed_powder(layer.checked), 0.5, Weight::number);
   std::vector<std::size_t> coarse, all;
   for (Span const bin : bins) {
     std::vector<std::size_t> const rows = added_in(layer, bin);
