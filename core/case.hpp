@@ -167,7 +167,7 @@ struct CalibrateSettings {
 struct EffectSettings {
   bool enabled = false;
   double strength = 1;
-  std::map<std::string, double> parameters;  ///< SI
+  std::map<std::string, double> parameters = {};  ///< SI
 };
 
 struct Case {
