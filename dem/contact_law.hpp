@@ -2,16 +2,19 @@
 #include <cmath>
 
 #include "core/case.hpp"
+#include "dem/vector_math.hpp"
 
 namespace layerloop::dem {
 
 /// Liquid between two bodies: F = force R / (1 + 1.05 S + 2.5 S^2), S = steepness gap / R, up to a gap of rupture R
 /// (Willett et al., Langmuir 16 (2000) 9396, eq. for small volumes, with 2 R for the radius of equal spheres).
-struct LiquidBridge {
-  double force = 0;  ///< [N/m]
-  double steepness = 0;
-  double rupture = 0;
+template <class Number>
+struct BasicLiquidBridge {
+  Number force{};  ///< [N/m]
+  Number steepness{};
+  Number rupture{};
 };
+using LiquidBridge = BasicLiquidBridge<double>;
 
 /// Hertz-Mindlin contact with history and restitution-exact damping, as prefactors, and what is added to it.
 ///
@@ -29,22 +32,24 @@ struct LiquidBridge {
 /// LIGGGHTS; cdt and epsd2: Ai et al., Powder Technol. 206 (2011) 269. Velocities come half a step late (leapfrog):
 /// under a force K + g v that acts as if the mass were m - g dt/2 and damps too much by the share g dt/(4 m). Normal
 /// damping is reduced by it, so that the restitution is of second order in the step.
-struct ContactLaw {
-  double normal_stiffness = 0;      ///< 4/3 E [Pa]
-  double tangential_stiffness = 0;  ///< 8 G [Pa]
-  double normal_damping = 0;        ///< g_n / sqrt(m a) [sqrt(Pa)]
-  double tangential_damping = 0;    ///< g_t / sqrt(m a) [sqrt(Pa)]
-  double sliding_friction = 0;
-  double rolling_friction = 0;
-  double cohesion = 0;             ///< sjkr, sjkr2: attraction / (R d) [Pa]
-  double pull_off = 0;             ///< dmt: attraction / R, 2 pi W [N/m]
-  double adhesion = 0;             ///< jkr: c = sqrt(2 pi W / E) in d = a^2/R - c sqrt(a) [sqrt(m)]
-  LiquidBridge bridge = {};        ///< forms on touch, and holds until it ruptures
-  double charge = 0;               ///< attraction / (r_1 r_2 / distance)^2; grains of like charge: negative [N/m^2]
-  double adhesion_in_coulomb = 0;  ///< 1 where the Coulomb bound takes the total normal force, else 0
-  double least_normal = -1e300;    ///< normal force before attraction is at least this: 0 when clamped [N]
-  double keeps_spring = 0;         ///< 1 where a sliding contact keeps its spring, 0 where it rescales it
+template <class Number>
+struct BasicContactLaw {
+  Number normal_stiffness{};      ///< 4/3 E [Pa]
+  Number tangential_stiffness{};  ///< 8 G [Pa]
+  Number normal_damping{};        ///< g_n / sqrt(m a) [sqrt(Pa)]
+  Number tangential_damping{};    ///< g_t / sqrt(m a) [sqrt(Pa)]
+  Number sliding_friction{};
+  Number rolling_friction{};
+  Number cohesion{};                   ///< sjkr, sjkr2: attraction / (R d) [Pa]
+  Number pull_off{};                   ///< dmt: attraction / R, 2 pi W [N/m]
+  Number adhesion{};                   ///< jkr: c = sqrt(2 pi W / E) in d = a^2/R - c sqrt(a) [sqrt(m)]
+  BasicLiquidBridge<Number> bridge{};  ///< forms on touch, and holds until it ruptures
+  Number charge{};                     ///< attraction / (r_1 r_2 / distance)^2; between like grains negative [N/m^2]
+  Number adhesion_in_coulomb{};        ///< 1 where the Coulomb bound takes the total normal force, else 0
+  Number least_normal = Number{} - 1e300;  ///< normal force before attraction is at least this: 0 when clamped [N]
+  Number keeps_spring{};                   ///< 1 where a sliding contact keeps its spring, 0 where it rescales it
 };
+using ContactLaw = BasicContactLaw<double>;
 
 /// How far attraction reaches: to touch; to where a JKR contact tears; beyond touch (bridges, charge).
 enum class Reach { touch, tear_off, beyond };
@@ -76,110 +81,134 @@ double bond_number(double radius, double density, ContactSettings const& contact
 /// is cut off at a radius.
 double reach_gap(ContactLaw const& law, double reduced_radius);
 
-/// Geometry and motion of one pair. The normal points from the second body to the first.
-struct ContactState {
-  double overlap, radius, inverse_mass;  ///< d (negative: apart), R, 1/m
-  double nx, ny, nz;
-  double vx, vy, vz;  ///< velocity of the first centre relative to the second [m/s]
-  double sx, sy, sz;  ///< surface rotation: arm_1 w_1 + arm_2 w_2 [m/s], arm = radius - d/2
-  double wx, wy, wz;  ///< spin of the first relative to the second [rad/s]
-  double spring_x, spring_y, spring_z;
-  double turn_x, turn_y, turn_z;  ///< epsd2: rolling angle that is stored [rad]
-  double closeness;               ///< (r_1 r_2 / distance)^2, for charge [m^2]
-  bool was_touching;
+/// Geometry and motion of one pair, or of eight. The normal points from the second body to the first.
+template <class Number>
+struct BasicContactState {
+  Number overlap, radius, inverse_mass;  ///< d (negative: apart), R, 1/m
+  Number nx, ny, nz;
+  Number vx, vy, vz;  ///< velocity of the first centre relative to the second [m/s]
+  Number sx, sy, sz;  ///< surface rotation: arm_1 w_1 + arm_2 w_2 [m/s], arm = radius - d/2
+  Number wx, wy, wz;  ///< spin of the first relative to the second [rad/s]
+  Number spring_x, spring_y, spring_z;
+  Number turn_x, turn_y, turn_z;  ///< epsd2: rolling angle that is stored [rad]
+  Number closeness;               ///< (r_1 r_2 / distance)^2, for charge [m^2]
+  decltype(Number{} > Number{}) was_touching;
 };
+using ContactState = BasicContactState<double>;
 
 /// What a contact does to the first body; the second gets -force, and the torque with its own arm and +rolling.
-struct ContactAction {
-  double fx, fy, fz;  ///< force on the first body [N]
-  double qx, qy, qz;  ///< normal x tangential force; torque is -arm q on either body [N]
-  double rx, ry, rz;  ///< rolling torque, taken from the first body [N m]
-  double spring_x, spring_y, spring_z;
-  double turn_x, turn_y, turn_z;
-  bool touches;
+template <class Number>
+struct BasicContactAction {
+  Number fx, fy, fz;  ///< force on the first body [N]
+  Number qx, qy, qz;  ///< normal x tangential force; torque is -arm q on either body [N]
+  Number rx, ry, rz;  ///< rolling torque, taken from the first body [N m]
+  Number spring_x, spring_y, spring_z;
+  Number turn_x, turn_y, turn_z;
+  decltype(Number{} > Number{}) touches;
 };
+using ContactAction = BasicContactAction<double>;
 
 /// Contact radius and forces along the normal, before damping.
+template <class Number>
 struct NormalForce {
-  double contact_radius, elastic, attraction;
-  bool touches;  ///< or is held by a bridge
+  Number contact_radius, elastic, attraction;
+  Number viscous{};                       ///< sqrt(m a)
+  decltype(Number{} > Number{}) touches;  ///< or is held by a bridge
 };
 
-[[gnu::always_inline]] inline NormalForce hertz(ContactLaw const& law, ContactState const& c) {
-  double const overlap = c.overlap > 0.0 ? c.overlap : 0.0, area = c.radius * overlap;
-  double const a = std::sqrt(area);
-  bool const touches = c.overlap > 0.0;
-  return {a, law.normal_stiffness * a * overlap, law.cohesion * area + (touches ? law.pull_off * c.radius : 0.0),
+template <class Number>
+[[gnu::always_inline]] inline NormalForce<Number> hertz(BasicContactLaw<Number> const& law,
+                                                        BasicContactState<Number> const& c) {
+  Number const none{}, overlap = c.overlap > 0.0 ? c.overlap : none, area = c.radius * overlap, a = root(area);
+  auto const touches = c.overlap > 0.0;
+  Number const pull_off = law.pull_off * c.radius;
+  return {a, law.normal_stiffness * a * overlap, law.cohesion * area + (c.overlap > 0.0 ? pull_off : none), none,
           touches};
 }
 
 /// As hertz(), with what acts before and after touch.
-[[gnu::always_inline]] inline NormalForce beyond_touch(ContactLaw const& law, ContactState const& c) {
-  NormalForce force = hertz(law, c);
-  double const gap = c.overlap < 0.0 ? -c.overlap : 0.0;
-  bool const bridged = force.touches || (c.was_touching && gap < law.bridge.rupture * c.radius);
-  double const s = law.bridge.steepness * gap / c.radius;
-  double const pull = law.bridge.force * c.radius / (1.0 + 1.05 * s + 2.5 * s * s);
-  force.attraction += (bridged ? pull : 0.0) + (gap < c.radius ? law.charge * c.closeness : 0.0);
+template <class Number>
+[[gnu::always_inline]] inline NormalForce<Number> beyond_touch(BasicContactLaw<Number> const& law,
+                                                               BasicContactState<Number> const& c) {
+  NormalForce<Number> force = hertz(law, c);
+  Number const none{}, gap = c.overlap < 0.0 ? -c.overlap : none;
+  auto const bridged = c.overlap > 0.0 || (c.was_touching && gap < law.bridge.rupture * c.radius);
+  Number const s = law.bridge.steepness * gap / c.radius;
+  Number const pull = law.bridge.force * c.radius / (1.0 + 1.05 * s + 2.5 * s * s), image = law.charge * c.closeness;
+  force.attraction += (bridged ? pull : none) + (gap < c.radius ? image : none);
   force.touches = bridged;
   return force;
 }
 
 /// Newton's iteration for b = sqrt(a) in b^4/R - c b = d, from above, where it converges monotonically to the stable
 /// branch; a contact forms at d = 0 and tears where that branch ends.
-[[gnu::always_inline]] inline NormalForce jkr(ContactLaw const& law, ContactState const& c) {
-  double const cR = law.adhesion * c.radius, overlap = c.overlap > 0.0 ? c.overlap : 0.0;
-  double y = std::sqrt(std::sqrt(cR)) + cR + 1e-9;  // above the cube root of cR, which is less than 1
-  for (int i = 0; i < 12; ++i) y -= (y * y * y - cR) / (3 * y * y);
-  double const tear = 0.75 * 0.6299605249474366 * law.adhesion * y;  // 4^(-1/3) y: where the branch ends
-  bool const touches = c.overlap > 0.0 || (c.was_touching && c.overlap > -tear);
-  double const reached = touches ? c.overlap : 0.0;
-  double b = std::sqrt(std::sqrt(c.radius * overlap)) + y;
+template <class Number>
+[[gnu::always_inline]] inline NormalForce<Number> jkr(BasicContactLaw<Number> const& law,
+                                                      BasicContactState<Number> const& c) {
+  Number const none{}, cR = law.adhesion * c.radius, overlap = c.overlap > 0.0 ? c.overlap : none;
+  Number y = root(root(cR)) + cR + 1e-9;  // above the cube root of cR, which is less than 1
+  for (int i = 0; i < 12; ++i) y -= (y * y * y - cR) / (3.0 * y * y);
+  Number const tear = 0.75 * 0.6299605249474366 * law.adhesion * y;  // 4^(-1/3) y: where the branch ends
+  auto const touches = c.overlap > 0.0 || (c.was_touching && c.overlap > -tear);
+  Number const reached = touches ? c.overlap : none;
+  Number b = root(root(c.radius * overlap)) + y;
   for (int i = 0; i < 10; ++i) {
-    double const cube = b * b * b;
-    b -= (cube * b - cR * b - c.radius * reached) / (4 * cube - cR);
+    Number const cube = b * b * b;
+    b -= (cube * b - cR * b - c.radius * reached) / (4.0 * cube - cR);
   }
-  double const a = touches ? b * b : 0.0, E = 0.75 * law.normal_stiffness;
-  double const a3 = a * a * a;
+  Number const square = b * b, a = touches ? square : none, E = 0.75 * law.normal_stiffness, a3 = a * a * a;
   // sqrt(8 pi W E) a^(3/2) with W = E c^2 / (2 pi)
-  return {a, law.normal_stiffness * a3 / c.radius, 2 * E * law.adhesion * std::sqrt(a3), touches};
+  return {a, law.normal_stiffness * a3 / c.radius, 2.0 * E * law.adhesion * root(a3), none, touches};
 }
 
-/// Straight-line code without branches, so that a loop over contacts becomes vector instructions.
-template <Reach reach, RollingModel rolling_model>
-[[gnu::always_inline]] inline ContactAction act(ContactLaw const& law, ContactState const& c, double dt) {
-  NormalForce const along =
-      reach == Reach::touch ? hertz(law, c) : (reach == Reach::tear_off ? jkr(law, c) : beyond_touch(law, c));
-  double const a = along.contact_radius, viscous = std::sqrt(a / c.inverse_mass);
+/// First half of a contact: what follows from positions. Needs of the state what stands above the velocities, and
+/// closeness and was_touching.
+template <Reach reach, class Number>
+[[gnu::always_inline]] inline NormalForce<Number> normal_force(BasicContactLaw<Number> const& law,
+                                                               BasicContactState<Number> const& c) {
+  NormalForce<Number> force;
+  if constexpr (reach == Reach::touch) force = hertz(law, c);
+  if constexpr (reach == Reach::tear_off) force = jkr(law, c);
+  if constexpr (reach == Reach::beyond) force = beyond_touch(law, c);
+  force.viscous = root(force.contact_radius * inverse(c.inverse_mass));
+  return force;
+}
 
-  double const vn = c.vx * c.nx + c.vy * c.ny + c.vz * c.nz;
-  double const viscosity_n = law.normal_damping * viscous;
-  double const damped = along.elastic - viscosity_n * vn / (1.0 + 0.25 * dt * viscosity_n * c.inverse_mass);
-  double const repulsive = damped > law.least_normal ? damped : law.least_normal;
-  double const normal = repulsive - along.attraction;
+/// Second half: what follows from motion. Straight-line code without branches, for one contact or for eight at once.
+template <RollingModel rolling_model, class Number>
+[[gnu::always_inline]] inline BasicContactAction<Number> act(BasicContactLaw<Number> const& law,
+                                                             NormalForce<Number> const& along,
+                                                             BasicContactState<Number> const& c, double dt) {
+  Number const none{}, one = filled<Number>(1.0), a = along.contact_radius, viscous = along.viscous;
 
-  double const tx = c.vx - vn * c.nx - (c.sy * c.nz - c.sz * c.ny);
-  double const ty = c.vy - vn * c.ny - (c.sz * c.nx - c.sx * c.nz);
-  double const tz = c.vz - vn * c.nz - (c.sx * c.ny - c.sy * c.nx);
-  double ux = c.spring_x + tx * dt, uy = c.spring_y + ty * dt, uz = c.spring_z + tz * dt;
-  double const un = ux * c.nx + uy * c.ny + uz * c.nz;
+  Number const vn = c.vx * c.nx + c.vy * c.ny + c.vz * c.nz;
+  Number const viscosity_n = law.normal_damping * viscous;
+  Number const damped = along.elastic - viscosity_n * vn * inverse(1.0 + 0.25 * dt * viscosity_n * c.inverse_mass);
+  Number const repulsive = damped > law.least_normal ? damped : law.least_normal;
+  Number const normal = repulsive - along.attraction;
+
+  Number const tx = c.vx - vn * c.nx - (c.sy * c.nz - c.sz * c.ny);
+  Number const ty = c.vy - vn * c.ny - (c.sz * c.nx - c.sx * c.nz);
+  Number const tz = c.vz - vn * c.nz - (c.sx * c.ny - c.sy * c.nx);
+  Number ux = c.spring_x + tx * dt, uy = c.spring_y + ty * dt, uz = c.spring_z + tz * dt;
+  Number const un = ux * c.nx + uy * c.ny + uz * c.nz;
   ux -= un * c.nx;
   uy -= un * c.ny;
   uz -= un * c.nz;
 
-  double const stiffness = law.tangential_stiffness * a;
-  double const bound = law.sliding_friction * std::abs(repulsive - law.adhesion_in_coulomb * along.attraction);
-  double const stretched = stiffness * std::sqrt(ux * ux + uy * uy + uz * uz);
-  bool const slides = stretched > bound;
-  double const carried = slides ? bound / stretched : 1.0;
-  double const viscosity = slides ? 0.0 : law.tangential_damping * viscous;
-  double const pull = stiffness * carried;
-  double const gx = -(pull * ux + viscosity * tx);
-  double const gy = -(pull * uy + viscosity * ty);
-  double const gz = -(pull * uz + viscosity * tz);
-  double const kept = along.touches && a > 0.0 ? (law.keeps_spring > 0.0 ? 1.0 : carried) : 0.0;
+  Number const stiffness = law.tangential_stiffness * a;
+  Number const bound = law.sliding_friction * magnitude(repulsive - law.adhesion_in_coulomb * along.attraction);
+  Number const stretched = stiffness * stiffness * (ux * ux + uy * uy + uz * uz);  // squared
+  auto const slides = stretched > bound * bound;
+  Number const shortened = bound * inverse_root(stretched + 1e-280), dashpot = law.tangential_damping * viscous;
+  Number const carried = slides ? shortened : one, viscosity = slides ? none : dashpot;
+  Number const pull = stiffness * carried;
+  Number const gx = -(pull * ux + viscosity * tx);
+  Number const gy = -(pull * uy + viscosity * ty);
+  Number const gz = -(pull * uz + viscosity * tz);
+  Number const left = law.keeps_spring > 0.0 ? one : carried, kept = a > 0.0 ? left : none;
 
-  ContactAction action;
+  BasicContactAction<Number> action;
   action.fx = normal * c.nx + gx;
   action.fy = normal * c.ny + gy;
   action.fz = normal * c.nz + gz;
@@ -191,30 +220,37 @@ template <Reach reach, RollingModel rolling_model>
   action.spring_z = kept * uz;
   action.touches = along.touches;
 
-  double const most = law.rolling_friction * c.radius * along.elastic;
-  double const wn = c.wx * c.nx + c.wy * c.ny + c.wz * c.nz;
-  double const ox = c.wx - wn * c.nx, oy = c.wy - wn * c.ny, oz = c.wz - wn * c.nz;
+  Number const most = law.rolling_friction * c.radius * along.elastic;
+  Number const wn = c.wx * c.nx + c.wy * c.ny + c.wz * c.nz;
+  Number const ox = c.wx - wn * c.nx, oy = c.wy - wn * c.ny, oz = c.wz - wn * c.nz;
   if constexpr (rolling_model == RollingModel::cdt) {
-    double const spin = std::sqrt(c.wx * c.wx + c.wy * c.wy + c.wz * c.wz);
-    double const rolling = most / (spin > 0.0 ? spin : 1.0);
+    Number const rolling = most * inverse_root(c.wx * c.wx + c.wy * c.wy + c.wz * c.wz + 1e-280);
     action.rx = rolling * ox;
     action.ry = rolling * oy;
     action.rz = rolling * oz;
-    action.turn_x = action.turn_y = action.turn_z = 0.0;
+    action.turn_x = action.turn_y = action.turn_z = none;
   } else {
-    double const px = c.turn_x + ox * dt, py = c.turn_y + oy * dt, pz = c.turn_z + oz * dt;
-    double const along_n = px * c.nx + py * c.ny + pz * c.nz;
-    double const qx = px - along_n * c.nx, qy = py - along_n * c.ny, qz = pz - along_n * c.nz;
-    double const spring = stiffness * c.radius * c.radius, torque = spring * std::sqrt(qx * qx + qy * qy + qz * qz);
-    double const share = torque > most ? most / torque : 1.0, left = along.touches && a > 0.0 ? share : 0.0;
-    action.turn_x = left * qx;
-    action.turn_y = left * qy;
-    action.turn_z = left * qz;
+    Number const px = c.turn_x + ox * dt, py = c.turn_y + oy * dt, pz = c.turn_z + oz * dt;
+    Number const along_n = px * c.nx + py * c.ny + pz * c.nz;
+    Number const qx = px - along_n * c.nx, qy = py - along_n * c.ny, qz = pz - along_n * c.nz;
+    Number const spring = stiffness * c.radius * c.radius, torque = spring * root(qx * qx + qy * qy + qz * qz);
+    Number const cut = most * inverse(torque + 1e-280), share = torque > most ? cut : one,
+                 stays = a > 0.0 ? share : none;
+    action.turn_x = stays * qx;
+    action.turn_y = stays * qy;
+    action.turn_z = stays * qz;
     action.rx = spring * share * qx;
     action.ry = spring * share * qy;
     action.rz = spring * share * qz;
   }
   return action;
+}
+
+/// Both halves.
+template <Reach reach, RollingModel rolling_model, class Number>
+[[gnu::always_inline]] inline BasicContactAction<Number> act(BasicContactLaw<Number> const& law,
+                                                             BasicContactState<Number> const& c, double dt) {
+  return act<rolling_model>(law, normal_force<reach>(law, c), c, dt);
 }
 
 }  // namespace layerloop::dem

@@ -54,86 +54,147 @@ bool is_near(Grains const& g, std::size_t i, std::size_t j, Period const& period
 struct PairBlock {
   GrainLanes first, second;
   ActionLanes on_first, on_second;
-  Lanes<std::int64_t> law, touching;  // as wide as the numbers: narrower ones make the vectors of the loop too long
+  Lanes<std::int64_t> law, touching;
+  // what the first half of a contact leaves for the second
+  Lanes<double> nx, ny, nz, arm_first, arm_second, radius, contact_radius, elastic, attraction, viscous;
 };
 
 struct Springs {
   double *x, *y, *z, *turn_x, *turn_y, *turn_z;
 };
 
-double square(double x) { return x * x; }
-std::int64_t whole(double value, double per_unit) { return static_cast<std::int64_t>(value * per_unit); }
+/// Eight lanes of a quantity.
+Numbers& eight(double* lanes) { return *reinterpret_cast<Numbers*>(lanes); }
+Numbers const& eight(double const* lanes) { return *reinterpret_cast<Numbers const*>(lanes); }
 
-/// Lanes [0, count) of a block: what every pair does to its grains.
+void store(Lanes<std::int64_t>& to, std::size_t at, Numbers const& value, double per_unit) {
+  *reinterpret_cast<Flags*>(&to[at]) = __builtin_convertvector(value * per_unit, Flags);
+}
+
+BasicContactLaw<Numbers> filled_law(ContactLaw const& law) {
+  auto const all = [](double value) { return filled<Numbers>(value); };
+  return {all(law.normal_stiffness), all(law.tangential_stiffness),
+          all(law.normal_damping),   all(law.tangential_damping),
+          all(law.sliding_friction), all(law.rolling_friction),
+          all(law.cohesion),         all(law.pull_off),
+          all(law.adhesion),         {all(law.bridge.force), all(law.bridge.steepness), all(law.bridge.rupture)},
+          all(law.charge),           all(law.adhesion_in_coulomb),
+          all(law.least_normal),     all(law.keeps_spring)};
+}
+
+/// The laws of eight pairs: as many numbers, in the same order, as in one law.
+BasicContactLaw<Numbers> gathered_law(ContactLaw const* laws, std::int64_t const* which) {
+  constexpr std::size_t numbers = sizeof(ContactLaw) / sizeof(double);
+  static_assert(sizeof(BasicContactLaw<Numbers>) == numbers * sizeof(Numbers));
+  BasicContactLaw<Numbers> gathered;
+  auto* to = reinterpret_cast<double*>(&gathered);
+  for (std::size_t l = 0; l < lanes_at_once; ++l) {
+    auto const* from = reinterpret_cast<double const*>(laws + which[l]);
+    for (std::size_t n = 0; n < numbers; ++n) to[n * lanes_at_once + l] = from[n];
+  }
+  return gathered;
+}
+
+Numbers difference(Lanes<double> const& a, Lanes<double> const& b, std::size_t l) {
+  return eight(&a[l]) - eight(&b[l]);
+}
+
+/// First half of the contacts [0, count) of a block. In two halves, because a processor that looks ahead sees more of
+/// them at a time when each is short. \return largest overlap over the smaller grain's radius
+template <Reach reach, bool many_laws>
+double press(PairBlock& pairs, std::size_t count, ContactLaw const* laws, Period const& period) {
+  GrainLanes const &a = pairs.first, &b = pairs.second;
+  BasicContactLaw<Numbers> law = filled_law(laws[0]);
+  double const half_x = 0.5 * period.x, half_y = 0.5 * period.y;
+  Numbers const none{};
+  Numbers worst{};
+  for (std::size_t l = 0; l < count; l += lanes_at_once) {
+    Numbers dx = difference(a.x, b.x, l), dy = difference(a.y, b.y, l);
+    Numbers const dz = difference(a.z, b.z, l), x_up = dx + period.x, x_down = dx - period.x, y_up = dy + period.y,
+                  y_down = dy - period.y;
+    dx = dx > half_x ? x_down : dx;
+    dx = dx < -half_x ? x_up : dx;
+    dy = dy > half_y ? y_down : dy;
+    dy = dy < -half_y ? y_up : dy;
+    Numbers const squared = dx * dx + dy * dy + dz * dz, near = inverse_root(squared);
+    Numbers const ra = eight(&a.radius[l]), rb = eight(&b.radius[l]), sum = ra + rb, overlap = sum - squared * near;
+    Numbers const felt = overlap > 0.0 ? overlap : none;
+    BasicContactState<Numbers> state;
+    state.overlap = overlap;
+    state.radius = ra * rb * inverse(sum);
+    state.inverse_mass = eight(&a.inverse_mass[l]) + eight(&b.inverse_mass[l]);
+    if constexpr (reach == Reach::beyond) {
+      Numbers const close = ra * rb * near;
+      state.closeness = close * close;
+    }
+    if constexpr (reach != Reach::touch) state.was_touching = *reinterpret_cast<Flags*>(&pairs.touching[l]) != 0;
+    if constexpr (many_laws) law = gathered_law(laws, &pairs.law[l]);
+    NormalForce<Numbers> const force = normal_force<reach>(law, state);
+    eight(&pairs.nx[l]) = dx * near, eight(&pairs.ny[l]) = dy * near, eight(&pairs.nz[l]) = dz * near;
+    eight(&pairs.arm_first[l]) = ra - 0.5 * felt, eight(&pairs.arm_second[l]) = rb - 0.5 * felt;
+    eight(&pairs.radius[l]) = state.radius;
+    eight(&pairs.contact_radius[l]) = force.contact_radius;
+    eight(&pairs.elastic[l]) = force.elastic;
+    eight(&pairs.attraction[l]) = force.attraction;
+    eight(&pairs.viscous[l]) = force.viscous;
+    *reinterpret_cast<Flags*>(&pairs.touching[l]) = force.touches;
+    Numbers const relative = felt * inverse(ra < rb ? ra : rb);
+    worst = relative > worst ? relative : worst;
+  }
+  double most = 0;
+  for (int l = 0; l < 8; ++l) most = std::max(most, worst[l]);
+  return most;
+}
+
+/// Second half.
+template <RollingModel rolling, bool many_laws>
+void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, double dt,
+         ActionUnit const& unit) {
+  GrainLanes const &a = pairs.first, &b = pairs.second;
+  ActionLanes &p = pairs.on_first, &q = pairs.on_second;
+  BasicContactLaw<Numbers> law = filled_law(laws[0]);
+  constexpr bool has_turn = rolling == RollingModel::epsd2;
+  for (std::size_t l = 0; l < count; l += lanes_at_once) {
+    Numbers const arm_a = eight(&pairs.arm_first[l]), arm_b = eight(&pairs.arm_second[l]);
+    auto const surface = [&](Lanes<double> const& of_a, Lanes<double> const& of_b) {
+      return arm_a * eight(&of_a[l]) + arm_b * eight(&of_b[l]);
+    };
+    NormalForce<Numbers> force;
+    force.contact_radius = eight(&pairs.contact_radius[l]);
+    force.elastic = eight(&pairs.elastic[l]);
+    force.attraction = eight(&pairs.attraction[l]);
+    force.viscous = eight(&pairs.viscous[l]);
+    BasicContactState<Numbers> state;
+    state.radius = eight(&pairs.radius[l]);
+    state.inverse_mass = eight(&a.inverse_mass[l]) + eight(&b.inverse_mass[l]);
+    state.nx = eight(&pairs.nx[l]), state.ny = eight(&pairs.ny[l]), state.nz = eight(&pairs.nz[l]);
+    state.vx = difference(a.vx, b.vx, l), state.vy = difference(a.vy, b.vy, l), state.vz = difference(a.vz, b.vz, l);
+    state.sx = surface(a.wx, b.wx), state.sy = surface(a.wy, b.wy), state.sz = surface(a.wz, b.wz);
+    state.wx = difference(a.wx, b.wx, l), state.wy = difference(a.wy, b.wy, l), state.wz = difference(a.wz, b.wz, l);
+    state.spring_x = eight(s.x + l), state.spring_y = eight(s.y + l), state.spring_z = eight(s.z + l);
+    if constexpr (has_turn)
+      state.turn_x = eight(s.turn_x + l), state.turn_y = eight(s.turn_y + l), state.turn_z = eight(s.turn_z + l);
+    if constexpr (many_laws) law = gathered_law(laws, &pairs.law[l]);
+    BasicContactAction<Numbers> const c = act<rolling>(law, force, state, dt);
+    eight(s.x + l) = c.spring_x, eight(s.y + l) = c.spring_y, eight(s.z + l) = c.spring_z;
+    if constexpr (has_turn)
+      eight(s.turn_x + l) = c.turn_x, eight(s.turn_y + l) = c.turn_y, eight(s.turn_z + l) = c.turn_z;
+    store(p.fx, l, c.fx, unit.per_force), store(q.fx, l, -c.fx, unit.per_force);
+    store(p.fy, l, c.fy, unit.per_force), store(q.fy, l, -c.fy, unit.per_force);
+    store(p.fz, l, c.fz, unit.per_force), store(q.fz, l, -c.fz, unit.per_force);
+    store(p.tx, l, -arm_a * c.qx - c.rx, unit.per_torque), store(q.tx, l, c.rx - arm_b * c.qx, unit.per_torque);
+    store(p.ty, l, -arm_a * c.qy - c.ry, unit.per_torque), store(q.ty, l, c.ry - arm_b * c.qy, unit.per_torque);
+    store(p.tz, l, -arm_a * c.qz - c.rz, unit.per_torque), store(q.tz, l, c.rz - arm_b * c.qz, unit.per_torque);
+  }
+}
+
+/// What every pair [0, count) of a block does to its grains.
 /// \return largest overlap over the smaller grain's diameter
 template <Reach reach, RollingModel rolling, bool many_laws>
 double act_on(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, Period const& period,
               double dt, ActionUnit const& unit) {
-  GrainLanes const &a = pairs.first, &b = pairs.second;
-  ActionLanes &p = pairs.on_first, &q = pairs.on_second;
-  ContactLaw const only = laws[0];
-  double const half_x = 0.5 * period.x, half_y = 0.5 * period.y, period_x = period.x, period_y = period.y;
-  double const per_force = unit.per_force, per_torque = unit.per_torque;
-  double* __restrict ux = s.x, * __restrict uy = s.y, * __restrict uz = s.z;
-  double* __restrict ox = s.turn_x, * __restrict oy = s.turn_y, * __restrict oz = s.turn_z;
-  std::int64_t* __restrict touching = pairs.touching.values;
-  constexpr bool has_turn = rolling == RollingModel::epsd2;
-  double worst = 0;
-#pragma omp simd simdlen(8) reduction(max : worst)
-  for (std::size_t l = 0; l < count; ++l) {
-    double dx = a.x[l] - b.x[l], dy = a.y[l] - b.y[l];
-    double const dz = a.z[l] - b.z[l];
-    dx = dx > half_x ? dx - period_x : (dx < -half_x ? dx + period_x : dx);
-    dy = dy > half_y ? dy - period_y : (dy < -half_y ? dy + period_y : dy);
-    double const distance = std::sqrt(dx * dx + dy * dy + dz * dz), inverse = 1 / distance;
-    double const ra = a.radius[l], rb = b.radius[l], sum = ra + rb;
-    double const overlap = sum - distance, felt = overlap > 0.0 ? overlap : 0.0;
-    double const arm_a = ra - 0.5 * felt, arm_b = rb - 0.5 * felt;
-    ContactLaw const law = many_laws ? laws[pairs.law[l]] : only;
-    ContactState const state{overlap,
-                             ra * rb / sum,
-                             a.inverse_mass[l] + b.inverse_mass[l],
-                             dx * inverse,
-                             dy * inverse,
-                             dz * inverse,
-                             a.vx[l] - b.vx[l],
-                             a.vy[l] - b.vy[l],
-                             a.vz[l] - b.vz[l],
-                             arm_a * a.wx[l] + arm_b * b.wx[l],
-                             arm_a * a.wy[l] + arm_b * b.wy[l],
-                             arm_a * a.wz[l] + arm_b * b.wz[l],
-                             a.wx[l] - b.wx[l],
-                             a.wy[l] - b.wy[l],
-                             a.wz[l] - b.wz[l],
-                             ux[l],
-                             uy[l],
-                             uz[l],
-                             has_turn ? ox[l] : 0.0,
-                             has_turn ? oy[l] : 0.0,
-                             has_turn ? oz[l] : 0.0,
-                             reach == Reach::beyond ? square(ra * rb * inverse) : 0.0,
-                             reach != Reach::touch && touching[l] != 0};
-    ContactAction const c = act<reach, rolling>(law, state, dt);
-    ux[l] = c.spring_x;
-    uy[l] = c.spring_y;
-    uz[l] = c.spring_z;
-    if constexpr (has_turn) ox[l] = c.turn_x, oy[l] = c.turn_y, oz[l] = c.turn_z;
-    touching[l] = c.touches ? 1 : 0;
-    p.fx[l] = whole(c.fx, per_force);
-    p.fy[l] = whole(c.fy, per_force);
-    p.fz[l] = whole(c.fz, per_force);
-    q.fx[l] = -p.fx[l];
-    q.fy[l] = -p.fy[l];
-    q.fz[l] = -p.fz[l];
-    p.tx[l] = whole(-arm_a * c.qx - c.rx, per_torque);
-    p.ty[l] = whole(-arm_a * c.qy - c.ry, per_torque);
-    p.tz[l] = whole(-arm_a * c.qz - c.rz, per_torque);
-    q.tx[l] = whole(c.rx - arm_b * c.qx, per_torque);
-    q.ty[l] = whole(c.ry - arm_b * c.qy, per_torque);
-    q.tz[l] = whole(c.rz - arm_b * c.qz, per_torque);
-    double const relative = felt / (ra < rb ? ra : rb);
-    worst = relative > worst ? relative : worst;
-  }
+  double const worst = press<reach, many_laws>(pairs, count, laws, period);
+  rub<rolling, many_laws>(pairs, count, s, laws, dt, unit);
   return 0.5 * worst;
 }
 
