@@ -21,11 +21,15 @@ struct alignas(64) Lanes {
 
 /// The grains on one side of a block of contacts, a vector for each quantity.
 struct GrainLanes {
-  Lanes<double> x, y, z, radius, vx, vy, vz, inverse_mass, wx, wy, wz, inverse_inertia;
+  Lanes<double> x, y, z, radius, vx, vy, vz, inverse_mass, wx, wy, wz;
 };
 
-struct ActionLanes {
-  Lanes<std::int64_t> fx, fy, fz, tx, ty, tz;
+/// In whole units, see ActionUnit.
+struct ForceLanes {
+  Lanes<std::int64_t> x, y, z;
+};
+struct TorqueLanes {
+  Lanes<std::int64_t> x, y, z;
 };
 
 namespace detail {
@@ -53,9 +57,9 @@ V odd(V const& a, V const& b) {
   return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
 }
 
-/// Four vectors of eight rows' x, y, z, w from quads that lie `stride` doubles apart, at rows[0..8).
-inline void turn_quads(double const* quads, std::size_t stride, std::int32_t const* rows, double* x, double* y,
-                       double* z, double* w) {
+/// Vectors of eight rows' x, y, z, w (w: none if null) from quads that lie `stride` doubles apart, at rows[0..8).
+[[gnu::always_inline]] inline void turn_quads(double const* quads, std::size_t stride, std::int32_t const* rows,
+                                              double* x, double* y, double* z, double* w) {
   auto const quad = [&](int lane) {
     return *reinterpret_cast<Four<double> const*>(quads + stride * static_cast<std::size_t>(rows[lane]));
   };
@@ -65,7 +69,7 @@ inline void turn_quads(double const* quads, std::size_t stride, std::int32_t con
   *reinterpret_cast<Eight<double>*>(x) = lower_pairs(xz01, xz23);
   *reinterpret_cast<Eight<double>*>(y) = lower_pairs(yw01, yw23);
   *reinterpret_cast<Eight<double>*>(z) = upper_pairs(xz01, xz23);
-  *reinterpret_cast<Eight<double>*>(w) = upper_pairs(yw01, yw23);
+  if (w) *reinterpret_cast<Eight<double>*>(w) = upper_pairs(yw01, yw23);
 }
 
 struct EightQuads {
@@ -89,18 +93,24 @@ inline void load_lanes(GrainState const* grains, std::int32_t const* rows, Grain
   constexpr std::size_t stride = sizeof(GrainState) / sizeof(double);
   detail::turn_quads(quads, stride, rows, &into.x[at], &into.y[at], &into.z[at], &into.radius[at]);
   detail::turn_quads(quads + 4, stride, rows, &into.vx[at], &into.vy[at], &into.vz[at], &into.inverse_mass[at]);
-  detail::turn_quads(quads + 8, stride, rows, &into.wx[at], &into.wy[at], &into.wz[at], &into.inverse_inertia[at]);
+  detail::turn_quads(quads + 8, stride, rows, &into.wx[at], &into.wy[at], &into.wz[at], nullptr);
 }
 
-/// Adds lanes [at, at + lanes_at_once) to the actions of rows[0..lanes_at_once).
-inline void add_lanes(ActionLanes const& from, std::size_t at, std::int32_t const* rows, GrainAction* actions) {
-  detail::EightQuads const force = detail::back_to_quads(&from.fx[at], &from.fy[at], &from.fz[at]);
-  detail::EightQuads const torque = detail::back_to_quads(&from.tx[at], &from.ty[at], &from.tz[at]);
+enum class Side { first, second };
+
+/// Adds lanes [at, at + lanes_at_once) to the actions of slots[0..lanes_at_once); the force on the second side is the
+/// opposite of that on the first.
+template <Side side>
+void add_lanes(ForceLanes const& forces, TorqueLanes const& torques, std::size_t at, std::int32_t const* slots,
+               GrainAction* actions) {
+  detail::EightQuads force = detail::back_to_quads(&forces.x[at], &forces.y[at], &forces.z[at]);
+  detail::EightQuads const torque = detail::back_to_quads(&torques.x[at], &torques.y[at], &torques.z[at]);
   auto const add = [&](int row, detail::Eight<std::int64_t> const& both) {
-    auto& to = *reinterpret_cast<detail::Eight<std::uint64_t>*>(&actions[rows[row]]);
+    auto& to = *reinterpret_cast<detail::Eight<std::uint64_t>*>(&actions[slots[row]]);
     to += reinterpret_cast<detail::Eight<std::uint64_t> const&>(both);
   };
   for (int q = 0; q < 4; ++q) {
+    if constexpr (side == Side::second) force.of[q] = -force.of[q];
     add(q, __builtin_shufflevector(force.of[q], torque.of[q], 0, 1, 2, 3, 8, 9, 10, 11));
     add(q + 4, __builtin_shufflevector(force.of[q], torque.of[q], 4, 5, 6, 7, 12, 13, 14, 15));
   }

@@ -53,7 +53,8 @@ bool is_near(Grains const& g, std::size_t i, std::size_t j, Period const& period
 /// A block of pairs while it is worked on.
 struct PairBlock {
   GrainLanes first, second;
-  ActionLanes on_first, on_second;
+  ForceLanes force;  // on the first grain; the second gets its opposite
+  TorqueLanes on_first, on_second;
   Lanes<std::int64_t> law, touching;
   // what the first half of a contact leaves for the second
   Lanes<double> nx, ny, nz, arm_first, arm_second, radius, contact_radius, elastic, attraction, viscous;
@@ -138,7 +139,7 @@ double press(PairBlock& pairs, std::size_t count, ContactLaw const* laws, Period
     eight(&pairs.attraction[l]) = force.attraction;
     eight(&pairs.viscous[l]) = force.viscous;
     *reinterpret_cast<Flags*>(&pairs.touching[l]) = force.touches;
-    Numbers const relative = felt * inverse(ra < rb ? ra : rb);
+    Numbers const relative = felt * roughly_inverse(ra < rb ? ra : rb);
     worst = relative > worst ? relative : worst;
   }
   double most = 0;
@@ -151,7 +152,8 @@ template <RollingModel rolling, bool many_laws>
 void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, double dt,
          ActionUnit const& unit) {
   GrainLanes const &a = pairs.first, &b = pairs.second;
-  ActionLanes &p = pairs.on_first, &q = pairs.on_second;
+  ForceLanes& f = pairs.force;
+  TorqueLanes &p = pairs.on_first, &q = pairs.on_second;
   BasicContactLaw<Numbers> law = filled_law(laws[0]);
   constexpr bool has_turn = rolling == RollingModel::epsd2;
   for (std::size_t l = 0; l < count; l += lanes_at_once) {
@@ -179,12 +181,12 @@ void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const
     eight(s.x + l) = c.spring_x, eight(s.y + l) = c.spring_y, eight(s.z + l) = c.spring_z;
     if constexpr (has_turn)
       eight(s.turn_x + l) = c.turn_x, eight(s.turn_y + l) = c.turn_y, eight(s.turn_z + l) = c.turn_z;
-    store(p.fx, l, c.fx, unit.per_force), store(q.fx, l, -c.fx, unit.per_force);
-    store(p.fy, l, c.fy, unit.per_force), store(q.fy, l, -c.fy, unit.per_force);
-    store(p.fz, l, c.fz, unit.per_force), store(q.fz, l, -c.fz, unit.per_force);
-    store(p.tx, l, -arm_a * c.qx - c.rx, unit.per_torque), store(q.tx, l, c.rx - arm_b * c.qx, unit.per_torque);
-    store(p.ty, l, -arm_a * c.qy - c.ry, unit.per_torque), store(q.ty, l, c.ry - arm_b * c.qy, unit.per_torque);
-    store(p.tz, l, -arm_a * c.qz - c.rz, unit.per_torque), store(q.tz, l, c.rz - arm_b * c.qz, unit.per_torque);
+    store(f.x, l, c.fx, unit.per_force);
+    store(f.y, l, c.fy, unit.per_force);
+    store(f.z, l, c.fz, unit.per_force);
+    store(p.x, l, -arm_a * c.qx - c.rx, unit.per_torque), store(q.x, l, c.rx - arm_b * c.qx, unit.per_torque);
+    store(p.y, l, -arm_a * c.qy - c.ry, unit.per_torque), store(q.y, l, c.ry - arm_b * c.qy, unit.per_torque);
+    store(p.z, l, -arm_a * c.qz - c.rz, unit.per_torque), store(q.z, l, c.rz - arm_b * c.qz, unit.per_torque);
   }
 }
 
@@ -397,14 +399,16 @@ double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::i
                           has_turn ? &near.turn_x[at] : nullptr,
                           has_turn ? &near.turn_y[at] : nullptr,
                           has_turn ? &near.turn_z[at] : nullptr};
-    std::copy_n(&near.touching[at], count, pairs.touching.values);
+    if (laws.form.reach != Reach::touch) std::copy_n(&near.touching[at], count, pairs.touching.values);
     worst = std::max(worst, act_on_block(pairs, count, springs, laws.laws.data(), period, dt, unit));
     std::copy_n(pairs.touching.values, count, &near.touching[at]);
     constexpr auto mask = static_cast<std::int32_t>(NearPairs::ring) - 1;
     for (std::size_t l = 0; l < count; ++l) in_ring_first[l] = first[l] & mask, in_ring_second[l] = second[l] & mask;
     for (std::size_t l = 0; l < count; l += lanes_at_once) {
-      add_lanes(pairs.on_first, l, slot_first ? slot_first + (at - begin) + l : in_ring_first + l, actions);
-      add_lanes(pairs.on_second, l, slot_second ? slot_second + (at - begin) + l : in_ring_second + l, actions);
+      add_lanes<Side::first>(pairs.force, pairs.on_first, l,
+                             slot_first ? slot_first + (at - begin) + l : in_ring_first + l, actions);
+      add_lanes<Side::second>(pairs.force, pairs.on_second, l,
+                              slot_second ? slot_second + (at - begin) + l : in_ring_second + l, actions);
     }
   }
   return worst;

@@ -342,40 +342,49 @@ void Simulation::add_far_actions(std::size_t number, std::size_t from, std::size
   }
 }
 
+namespace {
+using Quad [[gnu::vector_size(32)]] = double;
+using WholeQuad [[gnu::vector_size(32)]] = std::int64_t;
+
+Quad& quad(double& first) { return reinterpret_cast<Quad&>(first); }
+
+Quad in_units(std::array<std::uint64_t, 4> const& whole, double unit) {
+  return __builtin_convertvector(reinterpret_cast<WholeQuad const&>(whole), Quad) * unit;
+}
+}  // namespace
+
 double Simulation::move(Share& own, std::size_t from, std::size_t to, GrainAction const* actions) {
   double const dt = motion_.time_step;
   double const x_low = std::isfinite(period_.x) ? 0.0 : -period_.x;
-  Vec3 const gravity = rig_.gravity * dt;
+  Quad const gravity{rig_.gravity.x() * dt, rig_.gravity.y() * dt, rig_.gravity.z() * dt, 0};
   double const drag = 6 * std::numbers::pi * motion_.contact.gas_viscosity * dt;  // Stokes, of gas at rest
   double fastest = 0, broken = 0;
   for (std::size_t i = from; i < to; ++i) {
     if (is_asleep(grains_.quiet[i])) continue;
-    GrainAction const& sum = actions[i - from];
-    double force[3], torque[3];
-    for (std::size_t c = 0; c < 3; ++c)
-      force[c] = static_cast<double>(static_cast<std::int64_t>(sum.force[c])) * unit_.force;
-    for (std::size_t c = 0; c < 3; ++c)
-      torque[c] = static_cast<double>(static_cast<std::int64_t>(sum.torque[c])) * unit_.torque;
+    Quad force = in_units(actions[i - from].force, unit_.force),
+         torque = in_units(actions[i - from].torque, unit_.torque);
     std::int32_t const entry = wall_entry_[i];
     auto const w = static_cast<std::size_t>(entry);
     if (entry >= 0) {
-      for (std::size_t c = 0; c < 3; ++c) force[c] += wall_contacts_.force[w][c];
-      for (std::size_t c = 0; c < 3; ++c) torque[c] += wall_contacts_.torque[w][c];
+      force += reinterpret_cast<Quad const&>(wall_contacts_.force[w]);
+      torque += reinterpret_cast<Quad const&>(wall_contacts_.torque[w]);
     }
     GrainState& g = grains_[i];
-    double const per_mass = dt * g.inverse_mass, per_inertia = dt * g.inverse_inertia;
-    double const kept = drag > 0 ? 1 / (1 + drag * g.radius * g.inverse_mass) : 1.0;
-    g.vx = kept * (g.vx + (force[0] * per_mass + gravity.x()));
-    g.vy = kept * (g.vy + (force[1] * per_mass + gravity.y()));
-    g.vz = kept * (g.vz + (force[2] * per_mass + gravity.z()));
-    g.wx += torque[0] * per_inertia;
-    g.wy += torque[1] * per_inertia;
-    g.wz += torque[2] * per_inertia;
-    double const x = g.x + g.vx * dt, y = g.y + g.vy * dt;
-    g.x = x < x_low ? x + period_.x : (x >= period_.x ? x - period_.x : x);
-    g.y = y < 0 ? y + period_.y : (y >= period_.y ? y - period_.y : y);
-    g.z += g.vz * dt;
-    double const speed_squared = squared(g.vx, g.vy, g.vz);
+    double const inverse_mass = g.inverse_mass, inverse_inertia = g.inverse_inertia;
+    Quad v = quad(g.vx) + (force * (dt * inverse_mass) + gravity);
+    if (drag > 0) v *= 1 / (1 + drag * g.radius * inverse_mass);
+    Quad const w_new = quad(g.wx) + torque * (dt * inverse_inertia);
+    Quad const r = quad(g.x) + v * dt;
+    double const radius = g.radius;
+    quad(g.vx) = v;
+    quad(g.wx) = w_new;
+    quad(g.x) = r;
+    g.inverse_mass = inverse_mass;
+    g.inverse_inertia = inverse_inertia;
+    g.radius = radius;
+    g.x = r[0] < x_low ? r[0] + period_.x : (r[0] >= period_.x ? r[0] - period_.x : r[0]);
+    g.y = r[1] < 0 ? r[1] + period_.y : (r[1] >= period_.y ? r[1] - period_.y : r[1]);
+    double const speed_squared = squared(v[0], v[1], v[2]);
     fastest = std::max(fastest, speed_squared);
     if (!(speed_squared < fastest_grain * fastest_grain)) broken = 1;  // NaN too
     if (entry >= 0) wall_contacts_.path[w] += std::sqrt(speed_squared) * dt;

@@ -31,6 +31,15 @@ inline Numbers inverse(Numbers const& x) {
 #endif
 }
 
+/// 1/x to four digits, for x > 0.
+inline Numbers roughly_inverse(Numbers const& x) {
+#if defined(__AVX512F__)
+  return _mm512_maskz_rcp14_pd(0xFF, x);
+#else
+  return 1.0 / x;
+#endif
+}
+
 /// 1/sqrt(x) to about one unit in the last place, for x > 1e-290.
 inline Numbers inverse_root(Numbers const& x) {
 #if defined(__AVX512F__)

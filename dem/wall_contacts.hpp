@@ -29,6 +29,8 @@ struct WallSpring {
   bool is_old = true;                         ///< they touched at the step before
 };
 
+struct alignas(32) ForceQuad : std::array<double, 4> {};
+
 /// Grains near walls, what they may touch, and their springs. Grains are in ascending order of row; the arrays of
 /// contacts hold room for every candidate, so that a step allocates nothing and loses no wall.
 struct WallContacts {
@@ -39,7 +41,7 @@ struct WallContacts {
   std::vector<std::int32_t> spring_begin;  ///< room of each grain in `springs`
   std::vector<std::int32_t> spring_count;
   std::vector<WallSpring> springs;
-  std::vector<std::array<double, 4>> force, torque;  ///< per grain of `grain`
+  std::vector<ForceQuad> force, torque;  ///< per grain of `grain`
 };
 
 /// Contacts of one thread's grains in one step, as arrays. Room for all candidates.
