@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/grain_size.hpp"
@@ -32,13 +33,6 @@ Range share(std::size_t n, int part, int parts) {
 
 double squared(double x, double y, double z) { return x * x + y * y + z * z; }
 
-void take_from_ring(GrainAction* ring, std::size_t from, std::size_t to, GrainAction* actions) {
-  for (std::size_t row = from; row < to; ++row) {
-    GrainAction& slot = ring[row % NearPairs::ring];
-    actions[row - from] = slot;
-    slot = {};
-  }
-}
 }  // namespace
 
 Motion motion_of(Case const& checked) {
@@ -260,10 +254,9 @@ void Simulation::run_steps(std::int64_t count) {
                           to = std::min(from + NearPairs::rows_a_chunk, own.near.to),
                           held = std::clamp(waits, from, to);
         hold(own, from, held);
-        GrainAction actions[NearPairs::rows_a_chunk];
-        take_from_ring(own.actions.data(), held, to, actions);
-        add_far_actions(number, held, to, actions);
-        fastest = std::max(fastest, move(own, held, to, actions));
+        ActionSlots const slots = in_ring(own);
+        add_far_actions(number, held, to, slots);
+        fastest = std::max(fastest, move(own, held, to, slots));
         clock.add_to(times.motion);
       }
       barrier.wait(threads);
@@ -272,8 +265,8 @@ void Simulation::run_steps(std::int64_t count) {
         double const dt = motion_.time_step;
         moving_walls_.advance(static_cast<double>(steps_ + s + 1) * dt, dt, wall_forces);
       }
-      add_far_actions(number, own.near.from, waits, own.held.data());
-      fastest = std::max(fastest, move(own, own.near.from, waits, own.held.data()));
+      add_far_actions(number, own.near.from, waits, held_by(own));
+      fastest = std::max(fastest, move(own, own.near.from, waits, held_by(own)));
       own.fastest_squared = fastest;
       clock.add_to(times.motion);
       barrier.wait(threads);
@@ -324,17 +317,24 @@ double Simulation::fastest_ghost_squared() const {
   return fastest;
 }
 
-void Simulation::hold(Share& share, std::size_t from, std::size_t to) {
-  take_from_ring(share.actions.data(), from, to, share.held.data() + (from - share.near.from));
+Simulation::ActionSlots Simulation::in_ring(Share& share) { return {share.actions.data(), 0, NearPairs::ring - 1}; }
+
+Simulation::ActionSlots Simulation::held_by(Share& share) {
+  return {share.held.data(), share.near.from, ~std::size_t{0}};
 }
 
-void Simulation::add_far_actions(std::size_t number, std::size_t from, std::size_t to, GrainAction* actions) {
+void Simulation::hold(Share& share, std::size_t from, std::size_t to) {
+  for (std::size_t row = from; row < to; ++row)
+    held_by(share).of(row) = std::exchange(in_ring(share).of(row), GrainAction{});
+}
+
+void Simulation::add_far_actions(std::size_t number, std::size_t from, std::size_t to, ActionSlots const& slots) {
   for (std::size_t k = 0; k <= number; ++k) {
     auto const& rows = shares_[k].near.far_rows;
     auto at = std::ranges::lower_bound(rows, static_cast<std::int32_t>(from)) - rows.begin();
     for (; at < std::ssize(rows) && static_cast<std::size_t>(rows[static_cast<std::size_t>(at)]) < to; ++at) {
       GrainAction& waiting = shares_[k].actions[static_cast<std::size_t>(NearPairs::far_slot + at)];
-      GrainAction& sum = actions[static_cast<std::size_t>(rows[static_cast<std::size_t>(at)]) - from];
+      GrainAction& sum = slots.of(static_cast<std::size_t>(rows[static_cast<std::size_t>(at)]));
       for (std::size_t c = 0; c < 3; ++c) sum.force[c] += waiting.force[c];
       for (std::size_t c = 0; c < 3; ++c) sum.torque[c] += waiting.torque[c];
       waiting = {};
@@ -353,16 +353,17 @@ Quad in_units(std::array<std::uint64_t, 4> const& whole, double unit) {
 }
 }  // namespace
 
-double Simulation::move(Share& own, std::size_t from, std::size_t to, GrainAction const* actions) {
+double Simulation::move(Share& own, std::size_t from, std::size_t to, ActionSlots const& slots) {
   double const dt = motion_.time_step;
   double const x_low = std::isfinite(period_.x) ? 0.0 : -period_.x;
   Quad const gravity{rig_.gravity.x() * dt, rig_.gravity.y() * dt, rig_.gravity.z() * dt, 0};
   double const drag = 6 * std::numbers::pi * motion_.contact.gas_viscosity * dt;  // Stokes, of gas at rest
   double fastest = 0, broken = 0;
   for (std::size_t i = from; i < to; ++i) {
+    GrainAction& action = slots.of(i);
+    Quad force = in_units(action.force, unit_.force), torque = in_units(action.torque, unit_.torque);
+    action = {};
     if (is_asleep(grains_.quiet[i])) continue;
-    Quad force = in_units(actions[i - from].force, unit_.force),
-         torque = in_units(actions[i - from].torque, unit_.torque);
     std::int32_t const entry = wall_entry_[i];
     auto const w = static_cast<std::size_t>(entry);
     if (entry >= 0) {

@@ -129,6 +129,15 @@ class Simulation {
     double fastest_squared = 0;  ///< of the last step
   };
 
+  /// Where what was done to a row is added up.
+  struct ActionSlots {
+    GrainAction* first;
+    std::size_t first_row, mask;
+    GrainAction& of(std::size_t row) const { return first[(row - first_row) & mask]; }
+  };
+  static ActionSlots in_ring(Share& share);
+  static ActionSlots held_by(Share& share);
+
   void run_steps(std::int64_t count);
   /// Gives the owned rows to this many shares, equal in pairs, and chooses their near pairs.
   void share_out(int shares);
@@ -137,10 +146,10 @@ class Simulation {
   void evaluate(Share& share, std::size_t chunk, PhaseClock& clock, PhaseTimes& times);
   /// Takes what was done to rows [from, to) out of the ring, for later.
   void hold(Share& share, std::size_t from, std::size_t to);
-  /// Adds what waits behind the rings of shares [0, number] for rows [from, to) to actions[row - from].
-  void add_far_actions(std::size_t number, std::size_t from, std::size_t to, GrainAction* actions);
-  /// Moves rows [from, to) on by one step. \return largest speed squared
-  double move(Share& share, std::size_t from, std::size_t to, GrainAction const* actions);
+  /// Adds what waits behind the rings of shares [0, number] for rows [from, to) to their slots.
+  void add_far_actions(std::size_t number, std::size_t from, std::size_t to, ActionSlots const& slots);
+  /// Moves rows [from, to) on by one step, and empties their slots. \return largest speed squared
+  double move(Share& share, std::size_t from, std::size_t to, ActionSlots const& slots);
   double fastest_ghost_squared() const;
   std::vector<std::int64_t> loads() const;  ///< of the owned grains, in pairs
   void append_all_springs(std::vector<LocalSpring>& springs) const;
