@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/huge_pages.hpp"
 #include "core/powder_bed.hpp"
 
 namespace layerloop::dem {
@@ -31,7 +32,7 @@ struct GrainRecord {
 /// close enough to touch its own. Rows change at every neighbour rebuild; ids never do.
 struct Grains {
   std::size_t owned = 0;
-  std::vector<GrainState> state;
+  std::vector<GrainState, HugePages<GrainState>> state;
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> material, leaves, quiet;
 

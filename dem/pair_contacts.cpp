@@ -374,6 +374,15 @@ void append_springs(NearPairs const& near, Neighbours const& neighbours, Grains 
 
 namespace {
 
+constexpr std::size_t rows_ahead = 1024, rows_a_block = 28, rows_in_cache = 100'000;
+
+/// Asks for rows that will be partners soon: from a bed that does not fit in the cache they come late otherwise.
+void fetch_rows(Grains const& g, std::size_t from) {
+  if (g.size() < rows_in_cache || from + rows_a_block > g.size()) return;
+  auto const* bytes = reinterpret_cast<char const*>(&g[from]);
+  for (std::size_t at = 0; at < rows_a_block * sizeof(GrainState); at += 64) __builtin_prefetch(bytes + at, 1);
+}
+
 /// The pairs [begin, end), whose slots are given or else the rows modulo the ring.
 double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::int32_t const* slot_first,
                      std::int32_t const* slot_second, Grains const& g, LawTable const& laws, Period const& period,
@@ -385,6 +394,7 @@ double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::i
   double worst = 0;
   for (std::size_t at = begin; at < end; at += block) {
     std::size_t const count = std::min(block, end - at);
+    fetch_rows(g, static_cast<std::size_t>(std::min(near.first[at], near.second[at])) + rows_ahead);
     std::int32_t const *first = near.first.data() + at, *second = near.second.data() + at;
     for (std::size_t l = 0; l < count; l += lanes_at_once) {
       load_lanes(g.state.data(), first + l, pairs.first, l);

@@ -1,5 +1,4 @@
 #pragma once
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -24,9 +23,10 @@ struct LawTable {
 /// or into another share). What a pair does is added up in a ring of slots, row modulo `ring`, small enough for the
 /// cache; what the others do to their higher row waits in a slot of its own behind the ring.
 struct NearPairs {
-  using Numbers = std::vector<double, Eigen::aligned_allocator<double>>;
+  using Numbers = std::vector<double, HugePages<double>>;
+  using Rows = std::vector<std::int32_t, HugePages<std::int32_t>>;
   std::size_t from = 0, to = 0;  ///< rows: pairs whose lower row is one of these
-  std::vector<std::int32_t> first, second;
+  Rows first, second;
   Numbers spring_x, spring_y, spring_z;
   Numbers turn_x, turn_y, turn_z;      ///< only with a rolling spring
   std::vector<std::uint8_t> touching;  ///< at the last evaluation

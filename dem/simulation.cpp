@@ -19,7 +19,7 @@ namespace layerloop::dem {
 namespace {
 constexpr double skin_over_smallest_radius = 0.35;
 constexpr std::size_t grains_a_thread = 400;  // fewer are not worth a barrier
-constexpr double steps_a_choice = 30;         // aimed at, between choices of near pairs
+constexpr double steps_a_choice = 60;         // aimed at, between choices of near pairs
 constexpr double least_half_gap = 5e-5;       // of the smallest radius
 
 struct Range {

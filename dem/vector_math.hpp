@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #if defined(__AVX512F__)
 #include <immintrin.h>
@@ -17,7 +18,9 @@ inline double inverse(double x) { return 1 / x; }
 inline double inverse_root(double x) { return 1 / std::sqrt(x); }
 inline double root(double x) { return std::sqrt(x); }
 
-inline Numbers magnitude(Numbers const& x) { return x < 0.0 ? -x : x; }
+inline Numbers magnitude(Numbers const& x) {
+  return reinterpret_cast<Numbers>(reinterpret_cast<Flags>(x) & std::numeric_limits<std::int64_t>::max());
+}
 
 /// 1/x to about one unit in the last place, for x > 0: two steps of Newton's from the processor's estimate are four
 /// times as fast as its division.
