@@ -17,6 +17,7 @@ constexpr double overlap_limit = 0.05;  // of the smaller diameter
 constexpr double nip_limit = 0.02;      // of the smaller diameter, while a wall moves
 constexpr double step_limit = 0.1;      // of the smallest radius
 constexpr double least_steps_a_contact = 8;
+constexpr double least_speed = 0.02;  // [m/s], of grains and blades that are called slow
 constexpr std::int64_t steps_between_looks = 20;
 constexpr std::int64_t steps_between_sink_checks = 500;
 
@@ -67,8 +68,9 @@ std::int64_t Simulation::look() {
   double const dt = motion_.time_step, step = std::sqrt(seen.step_squared),
                speed = std::max(step / dt, moving_walls_.fastest());
   double const moved = std::max(std::sqrt(seen.displacement_squared), moving_walls_.travelled());
-  bool const contact_too_short = speed > 0 && hertz_contact_time(smallest_radius_, motion_.density, speed,
-                                                                 motion_.contact) < least_steps_a_contact * dt;
+  // a bed at rest does not stay so: an unstable step is told before anything moves
+  bool const contact_too_short = hertz_contact_time(smallest_radius_, motion_.density, std::max(speed, least_speed),
+                                                    motion_.contact) < least_steps_a_contact * dt;
   if (step > step_limit * smallest_radius_ || contact_too_short || moved > 0.5 * skin_) fail(find_fastest());
 
   moving_walls_.record(time());
@@ -223,7 +225,7 @@ Simulation::Fault Simulation::find_fastest() const {
     }
   }
   if (fastest < 0) return {};
-  double const speed = std::max(std::sqrt(fastest), moving_walls_.fastest());
+  double const speed = std::max({std::sqrt(fastest), moving_walls_.fastest(), least_speed});
   double const contact_steps =
       hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) / motion_.time_step;
   return {fastest,
