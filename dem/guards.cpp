@@ -99,6 +99,7 @@ void Simulation::check_sleep() {
   double const interval = static_cast<double>(steps_between_checks + steps_between_looks) * motion_.time_step;
   bool const changed = update_sleep(grains_, neighbours_, near_moving_wall, period_, interval);
   if (!communicator_.any(changed)) return;
+  decomposition_.update_ghosts(grains_);  // those that fell asleep were stopped
   decomposition_.update_ghost_sleep(grains_);
   share_out(team_.threads());
 }

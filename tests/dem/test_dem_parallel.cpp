@@ -43,6 +43,21 @@ TEST(Bits, DoNotDependOnRanks) {
   }
 }
 
+TEST(Bits, DoNotDependOnRanksWhenGrainsSleep) {
+  omp_set_num_threads(1);
+  Pile pile(160);
+  pile.bed = pile.run(alone(), 30000);
+  pile.rig.walls.blocks[1].motion.velocity = 0;
+  constexpr std::int64_t steps = 8000;
+  PowderBed const awake = on_ranks(1, pile, steps);
+  pile.checked.run.grains_sleep = true;
+  PowderBed const single = on_ranks(1, pile, steps), four = on_ranks(4, pile, steps);
+  if (Communicator().rank() == 0) {
+    EXPECT_EQ(differences(single, four), 0);
+    EXPECT_GT(differences(single, awake), 0);  // some did sleep
+  }
+}
+
 TEST(Bits, DoNotDependOnRanksWhenAWallYields) {
   omp_set_num_threads(1);
   Pile pile(160);
