@@ -9,7 +9,7 @@
 namespace layerloop {
 
 /// Version of every HDF5 layout that layerloop writes; read files must carry the same one.
-inline constexpr int hdf5_format_version = 1;
+inline constexpr int hdf5_format_version = 2;
 
 /// A new HDF5 file, written aside (".tmp") and renamed by commit(); dropped when commit() is never reached.
 /// Serial: the root rank writes. Groups on the way to a dataset are made as needed. Members throw FileError.

@@ -20,6 +20,17 @@ void clear(NearPairs& near) {
   for (auto* rows : {&near.slot_first, &near.slot_second, &near.far_rows}) rows->clear();
 }
 
+/// Room for all listed pairs: memory that is not touched costs nothing, arrays that grow hold twice what they need.
+void reserve(NearPairs& near, std::size_t pairs, bool has_turn) {
+  std::size_t const most = pairs + 2 * lanes_at_once * ((near.to - near.from) / NearPairs::rows_a_chunk + 1);
+  near.first.reserve(most);
+  near.second.reserve(most);
+  near.touching.reserve(most);
+  for (auto* values : {&near.spring_x, &near.spring_y, &near.spring_z}) values->reserve(most);
+  for (auto* values : {&near.turn_x, &near.turn_y, &near.turn_z})
+    if (has_turn) values->reserve(most);
+}
+
 void append(NearPairs& near, std::int32_t first, std::int32_t second, PairSpring const& spring, bool touching,
             bool has_turn) {
   near.first.push_back(first);
@@ -284,6 +295,7 @@ void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& g, Perio
                  bool has_turn, NearPairs& old, std::vector<PairSpring> const& dormant) {
   clear(near);
   auto const far_away = static_cast<std::int32_t>(g.size());
+  reserve(near, static_cast<std::size_t>(neighbours.begin[near.to] - neighbours.begin[near.from]), has_turn);
   std::vector<FarPair> far;
   std::size_t chunk_begin = near.from;
   for (std::size_t row = near.from; row < near.to; ++row) {

@@ -23,6 +23,6 @@ struct SettledBedBench {
 /// Starts a bed from rest with no history on a cohesive floor, with the thesis' contact model (E 0.2 GPa, nu 0.3,
 /// e 0.7, friction 0.7, cdt 0.15, sjkr2 90000 J/m^3) and a step of 3.592e-8 s; no grain sleeps, every contact is
 /// computed every step. 100 steps are made before the clock starts. Collective. \throws InputError no floor, or empty
-SettledBedBench bench_settled_bed(BedFile const& file, std::int64_t steps, Communicator const& communicator);
+SettledBedBench bench_settled_bed(BedFile file, std::int64_t steps, Communicator const& communicator);
 
 }  // namespace layerloop::dem

@@ -128,6 +128,7 @@ void Simulation::rebuild() {
   std::ranges::sort(records, {}, place);
   grains_.clear();
   for (GrainRecord const& record : records) grains_.push_back(record);
+  records = {};  // many bytes a grain: given back before the neighbours need them
   grains_.owned = grains_.size();
   decomposition_.add_ghosts(grains_, 2 * largest_radius_ + skin_ + reach_);
   grains_.close();
@@ -204,11 +205,11 @@ double Simulation::suitable_half_gap(double fastest_squared) const {
 }
 
 void Simulation::choose_near_pairs(Share& share, double half_gap) {
-  std::swap(share.near, share.near_before);
-  share.near.from = share.near_before.from;
-  share.near.to = share.near_before.to;
+  NearPairs before = std::exchange(share.near, {});
+  share.near.from = before.from;
+  share.near.to = before.to;
   choose_near(share.near, neighbours_, grains_, period_, 2 * half_gap + reach_,
-              laws_.form.rolling == RollingModel::epsd2, share.near_before, share.near_before.dormant);
+              laws_.form.rolling == RollingModel::epsd2, before, before.dormant);
   share.actions.assign(share.near.slots(), {});
 }
 

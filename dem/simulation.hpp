@@ -121,7 +121,7 @@ class Simulation {
   void for_each_overlap(Visit const& visit) const;
   /// What one thread does: its rows, the pairs whose lower row is one of them, and what they do to any row.
   struct Share {
-    NearPairs near, near_before;
+    NearPairs near;
     std::vector<GrainAction> actions;  ///< by slot, see NearPairs
     std::vector<GrainAction> held;     ///< of the first rows, which must wait for earlier shares
     WallBatch batch;

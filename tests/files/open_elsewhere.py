@@ -40,7 +40,7 @@ class OpenElsewhere(unittest.TestCase):
 
     def test_bed_in_h5py(self):
         with h5py.File(self.bed) as file:
-            self.assertEqual(file.attrs["format_version"], 1)
+            self.assertEqual(file.attrs["format_version"], 2)
             self.assertEqual(file["bed/position"].attrs["unit"], b"m")
             np.testing.assert_array_equal(file["bed/id"], np.arange(5, 15))
             np.testing.assert_array_equal(file["bed/position"][:, 1], 2e-5 * np.arange(10))
