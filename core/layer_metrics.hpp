@@ -43,7 +43,10 @@ struct StrokeMetrics {
   double reservoir_mass_ratio = 0;                                         ///< mass in the zone after over before
   double heap_angle_accumulation = 0, heap_angle_accumulation_u_num = 0;   ///< [deg]
   double heap_angle_deposition = 0, heap_angle_deposition_u_num = 0;       ///< [deg]
-  double blade_force = 0;                                                  ///< largest against the stroke [N]
+  double blade_force = 0, mean_blade_force = 0;  ///< against the stroke: largest, and mean over it [N]
+  double bond_number = 0;                        ///< of the median grain: pull-off force over weight
+  double steps_per_contact = 0;                  ///< of the smallest grain at the recoating speed
+  double largest_overlap = 0;                    ///< over the smaller grain's diameter
 };
 
 }  // namespace layerloop

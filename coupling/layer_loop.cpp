@@ -58,15 +58,15 @@ void dose(Run const& run, BuildState& build) {
   Ledger& ledger = build.record.ledger;
   std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
   double const volume_before = total_volume(build.bed);
-  build.next_id =
-      dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count, build.next_id, run.comm, run.show_progress());
+  build.next_id = dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count,
+                            build.next_id, run.comm, run.show_progress());
   ledger.particles_fed += count;
   ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
 }
 
 /// What the stroke did to feed and heap. \param feed  before it
 StrokeMetrics stroke_metrics(dem::Reservoir const& feed, dem::Reservoir const& left, dem::HeapWatch const& heap,
-                             double blade_force) {
+                             dem::SpreadOutcome const& sweep) {
   return {.settled_height = feed.height,
           .settled_density = feed.density,
           .reservoir_mean_diameter_before = feed.mean_diameter,
@@ -76,7 +76,11 @@ StrokeMetrics stroke_metrics(dem::Reservoir const& feed, dem::Reservoir const& l
           .heap_angle_accumulation_u_num = heap.accumulation().standard_error,
           .heap_angle_deposition = heap.deposition().mean,
           .heap_angle_deposition_u_num = heap.deposition().standard_error,
-          .blade_force = blade_force};
+          .blade_force = sweep.blade_force,
+          .mean_blade_force = sweep.mean_blade_force,
+          .bond_number = sweep.bond_number,
+          .steps_per_contact = sweep.steps_per_contact,
+          .largest_overlap = sweep.largest_overlap};
 }
 
 /// The blade sweeps; what it leaves is measured.
@@ -91,7 +95,7 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   dem::SpreadOutcome const sweep =
       dem::spread(build.bed, now, build.substrate, run.comm, run.show_progress(), std::ref(heap));
   layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
-  layer.stroke = stroke_metrics(feed, dem::measure_reservoir(build.bed, machine), heap, sweep.blade_force);
+  layer.stroke = stroke_metrics(feed, dem::measure_reservoir(build.bed, machine), heap, sweep);
   for (LayerBin const& bin : layer.metrics.bins) layer.grains_in_layer += bin.grains;
   layer.blade_note = sweep.blade_note;
   layer.grains_nipped = sweep.nipped_grains;

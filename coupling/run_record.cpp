@@ -83,6 +83,10 @@ void members(Of<StrokeMetrics> auto& stroke, Visit&& visit) {
   visit("heap_angle_deposition", stroke.heap_angle_deposition);
   visit("heap_angle_deposition_u_num", stroke.heap_angle_deposition_u_num);
   visit("blade_force", stroke.blade_force);
+  visit("mean_blade_force", stroke.mean_blade_force);
+  visit("bond_number", stroke.bond_number);
+  visit("steps_per_contact", stroke.steps_per_contact);
+  visit("largest_overlap", stroke.largest_overlap);
 }
 
 template <class Visit>

@@ -84,6 +84,10 @@ std::map<std::string, std::string> stroke_definitions() {
        "Number mean of the grains with their centre in the accumulation zone after the stroke."},
       {"reservoir_mean_diameter_before", "The same before the stroke, after settling."},
       {"reservoir_mass_ratio", "Mass of the grains in the accumulation zone after the stroke over that before it."},
+      {"mean_blade_force", "The same, mean over the stroke."},
+      {"bond_number", "Pull-off force of two grains of the median radius over the weight of one."},
+      {"steps_per_contact", "Time steps in a Hertz impact of two of the smallest grains at the recoating speed."},
+      {"largest_overlap", "Largest overlap of the stroke and the rest after it, over the smaller grain's diameter."},
       {"blade_force",
        "Largest force of the grains against the stroke over the machine's periodic width, in newton; sampled every few "
        "steps."},

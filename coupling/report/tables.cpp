@@ -105,7 +105,16 @@ std::vector<Row> stroke_rows() {
                             um(l.stroke.reservoir_mean_diameter));
        }},
       {"mass left in the reservoir over before", "", [](L l) { return significant(l.stroke.reservoir_mass_ratio); }},
-      {"largest force on the blade", "mN", [](L l) { return significant(1e3 * l.stroke.blade_force); }}};
+      {"force on the blade, largest and mean", "mN",
+       [](L l) {
+         return fmt::format("{}, {}", significant(1e3 * l.stroke.blade_force),
+                            significant(1e3 * l.stroke.mean_blade_force));
+       }},
+      {"Bond number of the median grain", "", [](L l) { return significant(l.stroke.bond_number); }},
+      {"steps a contact, largest overlap", "1, %", [](L l) {
+         return fmt::format("{}, {}", significant(l.stroke.steps_per_contact),
+                            significant(1e2 * l.stroke.largest_overlap));
+       }}};
 }
 
 std::vector<Row> laser_rows() {
