@@ -37,6 +37,7 @@ struct PowderSettings {
   std::vector<double> fractions;  ///< sum 1, by `basis`
   std::int64_t particles = 0;     ///< grains fed before the first layer
   std::string bed = "";           ///< file of grains that are in the machine before the first layer; empty: none
+  std::map<std::string, double> mixture = {};  ///< material -> share of the mass, sum 1; empty: all of `material`
 };
 
 struct ContactSettings {
@@ -61,6 +62,21 @@ struct ContactSettings {
   WallCohesionArea wall_cohesion_area = WallCohesionArea::liggghts;
   CoulombOn coulomb_on = CoulombOn::repulsive;
   double time_step_fraction = 0;  ///< of the Rayleigh time of the smallest grain
+};
+
+/// What the case file calls everything that is not powder: plate, part, platforms, recoater.
+inline constexpr char const* walls_name = "wall";
+
+/// What [contact.NAME] gives of a material, or of the walls; nothing: as in [contact].
+struct BodySettings {
+  std::optional<double> youngs_modulus;  ///< [Pa]; walls may be rigid: infinite
+  std::optional<double> poisson_ratio;
+};
+
+/// What [contact.A.B] gives of two materials, or of a material and the walls; nothing: as in [contact].
+struct PairSettings {
+  std::optional<double> restitution, sliding_friction, rolling_friction;
+  std::optional<double> cohesion_energy_density, surface_energy;  ///< [J/m^3], [J/m^2]
 };
 
 /// x = 0 is where the accumulation zone begins and z = 0 the level of the platforms.
@@ -185,10 +201,24 @@ struct Case {
   RunSettings run;
   CalibrateSettings calibrate;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
-  Material material;  ///< the powder's, overrides applied; substrate and part are the same metal
+  Material material;                 ///< the powder's, overrides applied; substrate and part are the same metal
+  std::vector<Material> admixtures;  ///< the others of powder.mixture
+  std::map<std::string, BodySettings> bodies;                ///< by material; of the walls: "wall"
+  std::map<std::array<std::string, 2>, PairSettings> pairs;  ///< by materials, or material and "wall", ascending
 
   bool has_laser() const { return process == Process::melting && !machine.frozen_zone; }
   bool has_part() const { return process == Process::melting || machine.frozen_zone; }
+  /// By PowderBed::material: 0 is `material`, then the admixtures.
+  std::vector<Material> materials() const {
+    std::vector<Material> all{material};
+    all.insert(all.end(), admixtures.begin(), admixtures.end());
+    return all;
+  }
+  /// Of a grain of this PowderBed::material [kg/m^3].
+  double density(std::int32_t index) const {
+    return index == 0 || admixtures.empty() ? material.density
+                                            : admixtures.at(static_cast<std::size_t>(index - 1)).density;
+  }
   bool has_machine() const { return process != Process::calibrating; }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
   /// 0 for an effect that is off (or that a case made without a file does not know).

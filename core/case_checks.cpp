@@ -8,8 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/contact_pairs.hpp"
 #include "core/grain_size.hpp"
-#include "core/rayleigh_time.hpp"
 #include "core/units.hpp"
 
 namespace layerloop {
@@ -31,6 +31,8 @@ class CaseChecks {
 
   void run() const {
     powder();
+    mixture();
+    pairs();
     effects();
     time_step();
     material();
@@ -89,9 +91,9 @@ class CaseChecks {
   /// The piston must not come up to the platforms before the last layer.
   void piston() const {
     MachineSettings const& m = c_.machine;
-    if (m.dosing != Dosing::feed || !known({"machine.dosing", "machine.dose_factor", "machine.layer_thickness",
-                                            "machine.deposition_length", "machine.accumulation_length",
-                                            "machine.accumulation_depth", "run.layers"}))
+    if (m.dosing != Dosing::feed ||
+        !known({"machine.dosing", "machine.dose_factor", "machine.layer_thickness", "machine.deposition_length",
+                "machine.accumulation_length", "machine.accumulation_depth", "run.layers"}))
       return;
     double const risen = static_cast<double>(c_.run.layers - 1) * m.feed_rise();
     if (risen > m.accumulation_depth) {
@@ -115,6 +117,45 @@ class CaseChecks {
     } else if (double const sum = std::accumulate(powder.fractions.begin(), powder.fractions.end(), 0.0);
                std::abs(sum - 1) > 1e-6) {
       report("powder.fractions", "sum to {:.6g} (must sum to 1)", sum);
+    }
+  }
+
+  void mixture() const {
+    std::map<std::string, double> const& mixture = c_.powder.mixture;
+    if (mixture.empty() || !known({"powder.mixture", "powder.material"})) return;
+    double sum = 0;
+    for (auto const& [name, share] : mixture) sum += share;
+    if (!mixture.contains(c_.powder.material))
+      report("powder.mixture", "lacks powder.material = \"{}\" (the main material is part of it) add its share",
+             c_.powder.material);
+    else if (std::abs(sum - 1) > 1e-6)
+      report("powder.mixture", "sums to {:.6g} (must sum to 1)", sum);
+    else if (mixture.size() > 1 && (c_.process != Process::spreading || c_.machine.frozen_zone))
+      report("powder.mixture",
+             "has {} materials (what melts or freezes is of one material so far, and calibration varies the values of "
+             "one) leave the table out, or use the verb spread without machine.frozen_zone",
+             mixture.size());
+  }
+
+  /// What a material or pair has of its own must not stand beside values that are varied, or have nothing to act on.
+  void pairs() const {
+    bool const has_energy = c_.contact.cohesion == Cohesion::sjkr || c_.contact.cohesion == Cohesion::sjkr2;
+    bool const has_surface = c_.contact.cohesion == Cohesion::jkr || c_.contact.cohesion == Cohesion::dmt;
+    for (auto const& [names, pair] : c_.pairs) {
+      std::string const table = "contact." + names[0] + "." + names[1];
+      if (c_.process == Process::calibrating)
+        origin_.report(table, fmt::format("[{}] is given (calibrate varies what [contact] gives) leave it out", table));
+      if (!known({"contact.cohesion"})) continue;
+      if (pair.cohesion_energy_density && !has_energy)
+        origin_.report(table + ".cohesion_energy_density",
+                       fmt::format("{}.cohesion_energy_density is given (contact.cohesion is neither \"sjkr\" nor "
+                                   "\"sjkr2\") leave it out",
+                                   table));
+      if (pair.surface_energy && !has_surface)
+        origin_.report(table + ".surface_energy",
+                       fmt::format("{}.surface_energy is given (contact.cohesion is neither \"jkr\" nor \"dmt\") leave "
+                                   "it out",
+                                   table));
     }
   }
 
@@ -149,7 +190,7 @@ class CaseChecks {
                                          "contact.poisson_ratio", "material.density", "run.unsafe_time_step"})) {
       return;
     }
-    double const limit = rayleigh_time(0.5 * smallest(), c_.material.density, contact);
+    double const limit = shortest_rayleigh_time(c_, 0.5 * smallest());
     if (contact.time_step_fraction > 0.15 && !c_.run.unsafe_time_step) {
       report(
           "contact.time_step_fraction",

@@ -21,7 +21,8 @@ namespace {
 bool is_material(std::string const& table) { return table.starts_with("material."); }
 
 bool is_table(std::string const& name) {
-  return is_material(name) || name == "material" || name == "effects" ||
+  std::string const family = family_of(name);
+  return is_material(name) || name == "material" || name == "effects" || family != name ||
          std::find(case_tables().begin(), case_tables().end(), name) != case_tables().end();
 }
 
@@ -29,7 +30,7 @@ bool is_table(std::string const& name) {
 std::string tables_with(std::string const& key) {
   std::string list;
   for (CaseKey const& row : case_schema()) {
-    if (row.key != key || row.table.starts_with("effects.")) continue;
+    if (row.key != key || row.table.starts_with("effects.") || is_of_names(row)) continue;
     list += (list.empty() ? "[" : " or [") + (row.table == "material" ? "material.NAME" : row.table) + "]";
   }
   return list;
@@ -38,7 +39,7 @@ std::string tables_with(std::string const& key) {
 std::vector<std::string> keys_of(std::string const& table) {
   std::vector<std::string> keys;
   for (CaseKey const& row : case_schema()) {
-    if (row.table == (is_material(table) ? "material" : table)) keys.push_back(row.key);
+    if (row.table == family_of(table)) keys.push_back(row.key);
   }
   return keys;
 }
@@ -55,8 +56,9 @@ class CaseReader {
     case_.process = process.value_or(tables_.contains("laser") ? Process::melting : Process::spreading);
     report_unknown();
     for (CaseKey const& row : case_schema()) {
-      if (row.table != "material") fill(row, row.table, case_);
+      if (row.table != "material" && !is_of_names(row)) fill(row, row.table, case_);
     }
+    read_mixture();
     read_materials();
     report_missing();
     check_case(case_, {[this](std::string const& key) { return !unsound_.contains(key); },
@@ -80,6 +82,7 @@ class CaseReader {
     std::string full = name;
     if (name.starts_with("material.")) full = "material." + case_.powder.material + name.substr(8);
     if (auto const entry = written_.find(full); entry != written_.end()) return entry->second.place;
+    if (auto const table = tables_.find(full); table != tables_.end()) return table->second;
     auto const table = tables_.find(full.substr(0, full.rfind('.')));
     return table != tables_.end() ? table->second : Place{};
   }
@@ -159,6 +162,14 @@ class CaseReader {
     }
   }
 
+  void read_mixture() {
+    for (auto const& [name, entry] : written_) {
+      if (entry.table != "powder.mixture") continue;
+      fill(mixture_row(entry.key), entry.table, case_);
+      if (unsound_.contains(name)) unsound_.insert("powder.mixture");
+    }
+  }
+
   /// Built-in metals, changed and joined by the [material.NAME] tables; the powder's becomes that of the case.
   void read_materials() {
     std::map<std::string, Material> metals = built_in_materials();
@@ -168,6 +179,10 @@ class CaseReader {
     }
     std::string const& chosen = case_.powder.material;
     if (metals.contains(chosen)) names.insert(chosen);  // a preset may change it
+    for (auto const& [name, share] : case_.powder.mixture)
+      if (metals.contains(name)) names.insert(name);
+    if (names.contains(walls_name))
+      report(tables_.at("material.wall"), "no material can have the name \"wall\" (it stands for the walls) rename it");
     for (std::string const& name : names) {
       bool const is_new = !metals.contains(name);
       Case holder;
@@ -184,6 +199,63 @@ class CaseReader {
       metals[name] = holder.material;
     }
     choose_material(metals);
+    choose_admixtures(metals);
+    read_contact_tables(metals);
+  }
+
+  static std::vector<std::string> names_of(std::map<std::string, Material> const& metals) {
+    std::vector<std::string> names;
+    for (auto const& [name, metal] : metals) names.push_back(name);
+    return names;
+  }
+
+  void choose_admixtures(std::map<std::string, Material> const& metals) {
+    std::vector<std::string> const names = names_of(metals);
+    for (auto const& [name, share] : case_.powder.mixture) {
+      if (name == case_.powder.material) continue;
+      if (auto const metal = metals.find(name); metal != metals.end()) {
+        case_.admixtures.push_back(metal->second);
+      } else {
+        report(
+            place_of("powder.mixture." + name),
+            fmt::format("[powder.mixture] names \"{}\", which is not known (known: {}; [material.{}] may define it){}",
+                        name, fmt::join(names, ", "), name, did_you_mean(name, names)));
+        unsound_.insert("powder.mixture");
+      }
+    }
+  }
+
+  /// [contact.A] and [contact.A.B], where A and B are metals or "wall".
+  void read_contact_tables(std::map<std::string, Material> const& metals) {
+    std::vector<std::string> names = names_of(metals);
+    names.push_back(walls_name);
+    for (auto const& [table, place] : tables_) {
+      if (!table.starts_with("contact.")) continue;
+      std::string const rest = table.substr(8);
+      std::size_t const dot = rest.find('.');
+      bool const is_pair = dot != std::string::npos;
+      std::vector<std::string> bodies{rest.substr(0, dot)};
+      if (is_pair) bodies.push_back(rest.substr(dot + 1));
+      if (report_unknown_body(table, place, bodies, names)) continue;
+      if (is_pair && bodies[0] > bodies[1] && tables_.contains("contact." + bodies[1] + "." + bodies[0]))
+        report(place, fmt::format("[{}] is given twice (as [contact.{}.{}]; the order does not matter) join them",
+                                  table, bodies[1], bodies[0]));
+      for (CaseKey const& row : is_pair ? pair_rows(bodies[0], bodies[1]) : body_rows(bodies[0]))
+        fill(row, table, case_);
+    }
+  }
+
+  bool report_unknown_body(std::string const& table, Place const& place, std::vector<std::string> const& bodies,
+                           std::vector<std::string> const& names) {
+    for (std::string const& body : bodies) {
+      if (std::ranges::find(names, body) != names.end()) continue;
+      report(place, fmt::format("[{}] names \"{}\", which is not known (known: {}){}", table, body,
+                                fmt::join(names, ", "), did_you_mean(body, names)));
+      return true;
+    }
+    if (bodies.size() < 2 || bodies[0] != walls_name || bodies[1] != walls_name) return false;
+    report(place, fmt::format("[{}] is a pair of walls (they do not touch one another) name a material", table));
+    return true;
   }
 
   void choose_material(std::map<std::string, Material> const& metals) {
@@ -191,8 +263,7 @@ class CaseReader {
     if (auto const metal = metals.find(chosen); metal != metals.end()) {
       case_.material = metal->second;
     } else {
-      std::vector<std::string> names;
-      for (auto const& [name, metal] : metals) names.push_back(name);
+      std::vector<std::string> const names = names_of(metals);
       if (!chosen.empty()) {
         report(place_of("powder.material"),
                fmt::format("powder.material = \"{}\" is not known (known: {}; [material.{}] may define it){}", chosen,

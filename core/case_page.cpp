@@ -46,21 +46,44 @@ std::string default_column(CaseKey const& row) {
   return "";
 }
 
+/// Appends a row that has a value, after the head of its table where that is a new one.
+void write_row(std::string& text, std::string& table, CaseKey const& row, std::string const& head,
+               Case const& checked) {
+  std::optional<std::string> const value = stored(row, checked);
+  bool const never_given = !is_needed(row, checked) && row.fallback.empty() && value == stored(row, Case{});
+  if (!value || never_given) return;
+  if (head != table) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", head);
+  table = head;
+  text += fmt::format("{} = {}\n", row.key, *value);
+}
+
+/// [powder.mixture], [contact.A] and [contact.A.B] of the names that the case gives.
+void write_tables_of_names(std::string& text, std::string& table, Case const& checked) {
+  for (auto const& [name, share] : checked.powder.mixture) {
+    CaseKey row = mixture_row(name);
+    row.key = toml_text(name);
+    write_row(text, table, row, row.table, checked);
+  }
+  for (auto const& [name, body] : checked.bodies)
+    for (CaseKey const& row : body_rows(name)) write_row(text, table, row, "contact." + toml_text(name), checked);
+  for (auto const& [names, pair] : checked.pairs)
+    for (CaseKey const& row : pair_rows(names[0], names[1]))
+      write_row(text, table, row, fmt::format("contact.{}.{}", toml_text(names[0]), toml_text(names[1])), checked);
+}
 }  // namespace
 
 std::string resolved_toml(Case const& checked) {
   std::string text, table;
   for (CaseKey const& row : case_schema()) {
-    std::optional<std::string> const value = stored(row, checked);
-    bool const never_given = !is_needed(row, checked) && row.fallback.empty() && value == stored(row, Case{});
-    if (!value || never_given) continue;
-    if (row.table != table) {
-      table = row.table;
-      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n",
-                          table == "material" ? "material." + toml_text(checked.material.name) : table);
-    }
-    text += fmt::format("{} = {}\n", row.key, *value);
+    if (row.table != "material" && !is_of_names(row)) write_row(text, table, row, row.table, checked);
   }
+  Case with = checked;
+  for (Material const& metal : checked.materials()) {
+    with.material = metal;
+    for (CaseKey const& row : case_schema())
+      if (row.table == "material") write_row(text, table, row, "material." + toml_text(metal.name), with);
+  }
+  write_tables_of_names(text, table, checked);
   return text;
 }
 

@@ -108,6 +108,14 @@ std::vector<CaseKey> powder_rows() {
   };
 }
 
+/// For any NAME.
+std::vector<CaseKey> rows_of_names() {
+  std::vector<CaseKey> rows{mixture_row("NAME")};
+  for (auto const& part : {body_rows("NAME"), body_rows(walls_name), pair_rows("NAME", "NAME")})
+    rows.insert(rows.end(), part.begin(), part.end());
+  return rows;
+}
+
 std::vector<CaseKey> machine_rows() {
   using M = MachineSettings;
   constexpr auto machine = &Case::machine;
@@ -420,7 +428,8 @@ std::vector<CaseKey> effect_rows() {
 std::vector<CaseKey> const& case_schema() {
   static std::vector<CaseKey> const schema = [] {
     std::vector<CaseKey> rows;
-    for (auto const part : {powder_rows, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows, effect_rows, material_rows}) {
+    for (auto const part : {powder_rows, rows_of_names, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows,
+                            effect_rows, material_rows}) {
       for (CaseKey& row : part()) rows.push_back(std::move(row));
     }
     return rows;
@@ -460,9 +469,9 @@ std::string shown_range(CaseKey const& row) {
 }
 
 CaseKey const* find_key(std::string const& table, std::string const& key) {
-  std::string const family = table.starts_with("material.") ? "material" : table;
+  std::string const family = family_of(table);
   for (CaseKey const& row : case_schema()) {
-    if (row.table == family && row.key == key) return &row;
+    if (row.table == family && (row.key == key || row.key == "NAME")) return &row;
   }
   return nullptr;
 }

@@ -53,7 +53,7 @@ using Target =
 /// the page of keys come from it, so a new key is one row here and one member in core/case.hpp.
 struct CaseKey {
   std::string table;  ///< "laser"; "material" stands for any [material.NAME]; an effect has rows of its own
-  std::string key;
+  std::string key;    ///< of [powder.mixture]: NAME, for any material
   Target target;
   Dimension dimension = Dimension::none;
   Range range;
@@ -64,6 +64,16 @@ struct CaseKey {
 
 std::vector<CaseKey> const& case_schema();
 
+/// Rows of [powder.mixture] and of [contact.NAME], [contact.NAME.NAME] for these names. The schema holds them for NAME,
+/// and those of [contact.wall]; a case has those of the names that it gives.
+CaseKey mixture_row(std::string const& material);
+std::vector<CaseKey> body_rows(std::string const& body);
+std::vector<CaseKey> pair_rows(std::string const& a, std::string const& b);
+bool is_of_names(CaseKey const& row);
+
+/// Table under which the schema has the rows of a table: "material" for "material.Cu", "contact.NAME" for "contact.Cu".
+std::string family_of(std::string const& table);
+
 /// Whether a case has to give the key, unless it has a default.
 bool is_needed(CaseKey const& row, Case const& c);
 
@@ -71,7 +81,8 @@ std::string name_of(CaseKey const& row);  ///< "laser.power"
 
 std::string shown_range(CaseKey const& row);  ///< "[1 um, 2 mm]"; empty without bounds
 
-/// The row of a key as it stands in a file, where `table` may be "material.IN718"; null when there is none.
+/// The row of a key as it stands in a file, where `table` may be "material.IN718" or "contact.Cu.wall"; null when there
+/// is none.
 CaseKey const* find_key(std::string const& table, std::string const& key);
 
 /// Names of the tables, with "material.NAME" for any material.

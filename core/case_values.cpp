@@ -68,6 +68,7 @@ class Store {
     if (auto const* const real = std::get_if<double>(&value.content)) return *real;
     auto const* const written = std::get_if<std::string>(&value.content);
     std::string_view const unit = si_unit(dimension);
+    if (written && *written == "inf" && std::isinf(row_.range.max)) return row_.range.max;
     if (!written)
       refuse(unit.empty() ? "must be a number" : fmt::format("must be a number in {} or text with a unit", unit));
     try {

@@ -22,7 +22,7 @@ PowderSettings fed_powder(Case const& checked) {
   if (strength == 0) return powder;
   auto const& fines = checked.effects.at("fines").parameters;
   double const share = strength * fines.at("mass_fraction"), diameter = fines.at("diameter");
-  double const by_volume = share / (1 - share);  // over the rest of the powder; all grains have one density
+  double const by_volume = share / (1 - share);  // over the rest of the powder; all sizes hold the same materials
   double const grain = std::numbers::pi / 6 * std::pow(diameter, 3);
   powder.diameters.push_back(diameter);
   powder.fractions.push_back(powder.basis == SizeBasis::volume ? by_volume

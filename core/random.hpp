@@ -7,7 +7,14 @@
 namespace layerloop {
 
 /// What a random number is for: keeps the streams of the stages apart.
-enum class RandomStream : std::uint32_t { grain_size = 1, grain_position = 2, ray_shift = 3, plate_heights = 4, plate_grains = 5 };
+enum class RandomStream : std::uint32_t {
+  grain_size = 1,
+  grain_position = 2,
+  ray_shift = 3,
+  plate_heights = 4,
+  plate_grains = 5,
+  grain_material = 6
+};
 
 /// Four independent uniform numbers in (0, 1), a pure function of its arguments (Philox 4x32-10, Salmon et al. 2011):
 /// the same for any number of ranks and threads, and after a restart.

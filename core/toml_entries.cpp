@@ -113,12 +113,18 @@ TomlValue plain_value(toml::node const& node) {
   return {std::move(items)};
 }
 
+/// May a table hold one of this name?
+bool holds_table(std::string const& name, std::string_view key) {
+  bool const of_material = name.starts_with("contact.") && name.find('.', 8) == std::string::npos;
+  return name == "material" || name == "effects" || name == "contact" || of_material ||
+         (name == "powder" && key == "mixture");
+}
+
 void add_table(TomlContent& content, std::string const& name, toml::table const& table, Place const& place) {
   content.tables.emplace(name, place);
-  bool const holds_tables = name == "material" || name == "effects";
   for (auto const& [key, node] : table) {
     Place const key_place = place_of(key.source());
-    if (holds_tables && node.is_table()) {
+    if (node.is_table() && holds_table(name, key.str())) {
       add_table(content, name + "." + std::string(key.str()), *node.as_table(), key_place);
     } else {
       content.entries.push_back({name, std::string(key.str()), plain_value(node), key_place});

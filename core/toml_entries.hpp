@@ -49,7 +49,8 @@ struct SyntaxFault {
   Fault fault;
 };
 
-/// Reads tables of one level, and of two levels below `material` and `effects`.
+/// Reads tables of one level, of two levels below `material` and `effects`, of three below `contact`, and
+/// `powder.mixture`.
 /// Hostile text (depth, control bytes, size) is turned away before toml++ sees it. \throws SyntaxFault
 TomlContent parse_toml(std::string_view text);
 

@@ -14,7 +14,12 @@ PowderBed first_bed(Case const& checked) {
   MachineSettings const& m = checked.machine;
   PowderBed bed = read_bed(checked.powder.bed).bed;
   for (std::size_t i = 0; i < bed.size(); ++i) {
-    bed.material[i] = 0;
+    if (checked.admixtures.empty()) bed.material[i] = 0;
+    if (bed.material[i] < 0 || static_cast<std::size_t>(bed.material[i]) > checked.admixtures.size())
+      throw InputError(
+          fmt::format("{}: grain {} has material {} (the case has materials 0 to {}: powder.material, then "
+                      "the others of [powder.mixture] by name) give it one of them",
+                      checked.powder.bed, bed.id[i], bed.material[i], checked.admixtures.size()));
     bed.y[i] -= m.width * std::floor(bed.y[i] / m.width);
     if (bed.y[i] >= m.width) bed.y[i] = 0;
     double const ground = bed.x[i] < m.deposition_begin() ? -m.accumulation_depth : 0;

@@ -17,6 +17,7 @@
 #include "coupling/freeze_zone.hpp"
 #include "coupling/layer_output.hpp"
 #include "coupling/ledger.hpp"
+#include "coupling/material_mass.hpp"
 #include "coupling/melt_section.hpp"
 #include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
@@ -57,21 +58,30 @@ void dose(Run const& run, BuildState& build) {
   Stopwatch const timed(build.record.wall_time.dem);
   Ledger& ledger = build.record.ledger;
   std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
-  double const volume_before = total_volume(build.bed);
+  std::vector<double> const before = mass_by_material(build.bed, run.checked);
   build.next_id = dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count,
                             build.next_id, run.comm, run.show_progress());
   ledger.particles_fed += count;
-  ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
+  std::vector<double> const after = mass_by_material(build.bed, run.checked);
+  for (std::size_t m = 0; m < after.size(); ++m) build.record.mass_fed_by_material.at(m) += after[m] - before[m];
+  ledger.mass_fed = sum_of(build.record.mass_fed_by_material);
+}
+
+double mass_of(dem::Reservoir const& reservoir, Case const& checked) {
+  double mass = 0;
+  for (std::size_t m = 0; m < reservoir.volume_of_material.size(); ++m)
+    mass += checked.density(static_cast<std::int32_t>(m)) * reservoir.volume_of_material[m];
+  return mass;
 }
 
 /// What the stroke did to feed and heap. \param feed  before it
 StrokeMetrics stroke_metrics(dem::Reservoir const& feed, dem::Reservoir const& left, dem::HeapWatch const& heap,
-                             dem::SpreadOutcome const& sweep) {
+                             dem::SpreadOutcome const& sweep, Case const& checked) {
   return {.settled_height = feed.height,
           .settled_density = feed.density,
           .reservoir_mean_diameter_before = feed.mean_diameter,
           .reservoir_mean_diameter = left.mean_diameter,
-          .reservoir_mass_ratio = left.volume / feed.volume,
+          .reservoir_mass_ratio = mass_of(left, checked) / mass_of(feed, checked),
           .heap_angle_accumulation = heap.accumulation().mean,
           .heap_angle_accumulation_u_num = heap.accumulation().standard_error,
           .heap_angle_deposition = heap.deposition().mean,
@@ -95,14 +105,16 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   dem::SpreadOutcome const sweep =
       dem::spread(build.bed, now, build.substrate, run.comm, run.show_progress(), std::ref(heap));
   layer.metrics = dem::measure_layer(build.bed, base, before, run.checked);
-  layer.stroke = stroke_metrics(feed, dem::measure_reservoir(build.bed, machine), heap, sweep);
+  layer.stroke = stroke_metrics(feed, dem::measure_reservoir(build.bed, machine), heap, sweep, run.checked);
   for (LayerBin const& bin : layer.metrics.bins) layer.grains_in_layer += bin.grains;
   layer.blade_note = sweep.blade_note;
   layer.grains_nipped = sweep.nipped_grains;
 
   Ledger& ledger = build.record.ledger;
   ledger.particles_overflow += sweep.overflow_grains;
-  ledger.mass_overflow += run.checked.material.density * sweep.overflow_volume;
+  ledger.mass_overflow += sweep.overflow_mass;
+  if (!run.checked.admixtures.empty())
+    layer.materials = material_shares(build.bed, before.grains, build.record.mass_fed_by_material, run.checked);
 }
 
 /// Pictures are drawn by the root rank from the scene that is traced.
@@ -198,7 +210,8 @@ BuildState first_state(Case const& checked, RunOptions const& options, Communica
   build.bed = first_bed(checked);
   if (build.bed.size() > 0) build.next_id = build.bed.id.back() + 1;
   build.record.ledger.particles_fed = static_cast<std::int64_t>(build.bed.size());
-  build.record.ledger.mass_fed = checked.material.density * total_volume(build.bed);
+  build.record.mass_fed_by_material = mass_by_material(build.bed, checked);
+  build.record.ledger.mass_fed = sum_of(build.record.mass_fed_by_material);
   return build;
 }
 

@@ -90,7 +90,9 @@ void LayerOutput::layer(BuildState& build) const {
   write_bed_file(folder_ / fmt::format("bed_{:04}.h5", layer.layer), build.bed, build.substrate, {});
   for (BedFormat const format : exports_) {
     double const plate = -checked_.machine.layer_thickness * layer.layer;
-    BedFile const file{build.bed, std::nullopt, checked_.machine.width, plate, checked_.material.density};
+    std::optional<double> const density =
+        checked_.admixtures.empty() ? std::optional(checked_.material.density) : std::nullopt;
+    BedFile const file{build.bed, std::nullopt, checked_.machine.width, plate, density};
     write_bed(folder_ / fmt::format("bed_{:04}.{}", layer.layer, extension(format)), file, format);
   }
   write_stl(build.substrate, folder_ / fmt::format("solid_{:04}.stl", layer.layer));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "coupling/material_mass.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -40,7 +41,7 @@ void book_heat(Ledger& ledger, thermal::HeatOutcome const& heat) {
 void audit(BuildState& build, Case const& checked) {
   Ledger& ledger = build.record.ledger;
   ledger.particles_bed = static_cast<std::int64_t>(build.bed.size());
-  ledger.mass_bed = checked.material.density * total_volume(build.bed);
+  ledger.mass_bed = sum_of(mass_by_material(build.bed, checked));
 
   std::int64_t const accounted =
       ledger.particles_bed + ledger.particles_overflow + ledger.particles_melted + ledger.particles_lost;

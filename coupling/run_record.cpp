@@ -126,6 +126,14 @@ void members(Of<Consolidation> auto& part, Visit&& visit) {
 }
 
 template <class Visit>
+void members(Of<MaterialShare> auto& share, Visit&& visit) {
+  visit("name", share.name);
+  visit("mass_share_fed", share.fed);
+  visit("mass_share_layer", share.layer);
+  visit("mass_share_layer_u_num", share.layer_u_num);
+}
+
+template <class Visit>
 void members(Of<LayerRecord> auto& layer, Visit&& visit) {
   visit("layer", layer.layer);
   visit("grains_in_layer", layer.grains_in_layer);
@@ -133,6 +141,7 @@ void members(Of<LayerRecord> auto& layer, Visit&& visit) {
   visit("metrics", layer.metrics);
   visit("stroke", layer.stroke);
   visit("blade_note", layer.blade_note);
+  visit("materials", layer.materials);
   visit("absorptivity", layer.absorptivity);
   visit("absorptivity_standard_error", layer.absorptivity_standard_error);
   visit("mean_bounces", layer.mean_bounces);
@@ -189,6 +198,7 @@ template <class Visit>
 void members(Of<RunRecord> auto& record, Visit&& visit) {
   visit("layers", record.layers);
   visit("ledger", record.ledger);
+  visit("mass_fed_by_material", record.mass_fed_by_material);
   visit("wall_time", record.wall_time);
 }
 
@@ -278,6 +288,10 @@ json layer_summary(LayerRecord const& layer, Case const& checked) {
   entry["layer"] = layer.layer;
   entry["grains_in_layer"] = layer.grains_in_layer;
   entry["grains_nipped"] = layer.grains_nipped;
+  for (MaterialShare const& share : layer.materials) {
+    entry["by_material"][share.name] = encode(share);
+    entry["by_material"][share.name].erase("name");
+  }
   if (!layer.blade_note.empty()) entry["blade_note"] = layer.blade_note;
   if (checked.has_laser()) add_laser_keys(entry, layer);
   if (!checked.has_part()) return entry;
@@ -336,6 +350,11 @@ std::map<std::string, std::string> definitions(ReportExtras const& extras) {
       {"grains_nipped",
        "grains caught between the rigid blade and an edge (overlap above 2 % of the diameter), taken out and booked as "
        "overflow"},
+      {"by_material.*.mass_share_fed", "share of the material in the mass of all powder fed so far"},
+      {"by_material.*.mass_share_layer",
+       "share of the material in the mass of the grains that the layer added to the deposition zone"},
+      {"by_material.*.mass_share_layer_u_num",
+       "standard error of that share if so many grains were drawn at random from a large powder"},
       {"grains_moved", "grains that were moved clear of the new surface"},
       {"surface_height_correction", "mean change of the surface by levelling of the melt and resettling of grains"},
   };

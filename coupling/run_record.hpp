@@ -46,6 +46,13 @@ struct Consolidation {
   double part_relative_density = 0;  ///< metal / (metal + enclosed voids) of the part so far, plate left out
 };
 
+/// One material of a mixture in a layer, by mass.
+struct MaterialShare {
+  std::string name;
+  double fed = 0;                     ///< of all powder fed so far
+  double layer = 0, layer_u_num = 0;  ///< of the grains that the layer added to the deposition zone
+};
+
 /// Everything that a layer leaves for summary and report.
 struct LayerRecord {
   std::int32_t layer = 0;  ///< 1-based
@@ -53,7 +60,8 @@ struct LayerRecord {
   std::int64_t grains_nipped = 0;  ///< of the overflow: caught between the moving blade and an edge, and taken out
   LayerMetrics metrics;
   StrokeMetrics stroke;
-  std::string blade_note;  ///< empty, or what the blade would have touched
+  std::string blade_note;                ///< empty, or what the blade would have touched
+  std::vector<MaterialShare> materials;  ///< of a mixture
   double absorptivity = 0, absorptivity_standard_error = 0, mean_bounces = 0;
   std::int64_t rays = 0;
   AreaMap absorbed_energy;  ///< [J/m^2] over the exposure
@@ -72,6 +80,7 @@ struct WallTime {
 struct RunRecord {
   std::vector<LayerRecord> layers;
   Ledger ledger;
+  std::vector<double> mass_fed_by_material;  ///< by PowderBed::material [kg]
   WallTime wall_time;
 };
 

@@ -13,8 +13,9 @@ double parameter(Case const& checked, std::string const& effect, std::string con
 }
 }  // namespace
 
-ContactSettings contact_with_effects(Case const& checked) {
-  ContactSettings contact = checked.contact;
+ContactSettings contact_with_effects(Case const& checked) { return with_effects(checked.contact, checked); }
+
+ContactSettings with_effects(ContactSettings contact, Case const& checked) {
   double const cohesion = strength_of_standing(checked, "cohesion");
   contact.cohesion_energy_density *= cohesion;
   contact.surface_energy *= cohesion;

@@ -8,5 +8,7 @@ namespace layerloop::dem {
 /// grains do); `capillary_bridge`, `electrostatic_charge` and `gas_drag` add what it does not have. Each at its null
 /// value leaves every bit as it is without it.
 ContactSettings contact_with_effects(Case const& checked);
+/// The same for the contact values of a material or pair.
+ContactSettings with_effects(ContactSettings contact, Case const& checked);
 
 }  // namespace layerloop::dem

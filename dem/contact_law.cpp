@@ -8,14 +8,17 @@ namespace {
 using std::numbers::pi;
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // [F/m]
 
-/// Two bodies of the same material.
-double reduced_youngs_modulus(ContactSettings const& contact) {
-  return contact.youngs_modulus / (2 * (1 - contact.poisson_ratio * contact.poisson_ratio));
+/// E/(1 - nu^2): what a body has against a rigid one.
+double plane_modulus(Body const& b) { return b.youngs_modulus / (1 - b.poisson_ratio * b.poisson_ratio); }
+double tangential_modulus(Body const& b) {
+  return b.youngs_modulus / (2 * (2 - b.poisson_ratio) * (1 + b.poisson_ratio));
 }
 
-double reduced_shear_modulus(ContactSettings const& contact) {
-  return contact.youngs_modulus / (4 * (2 - contact.poisson_ratio) * (1 + contact.poisson_ratio));
-}
+/// 1/(1/first + 1/second); exactly half of either where they are alike, and the first where the second is infinite.
+double in_series(double first, double second) { return first / (1 + first / second); }
+
+/// Two bodies of the same material.
+double reduced_youngs_modulus(ContactSettings const& contact) { return plane_modulus(body_of(contact)) / 2; }
 
 double grain_mass(double radius, double density) { return 4.0 / 3.0 * pi * radius * radius * radius * density; }
 
@@ -24,8 +27,10 @@ bool has_energy_density(ContactSettings const& contact) {
 }
 
 /// \param area  contact area of sjkr2 / (R d); sjkr has half of it
-ContactLaw law_between(ContactSettings const& contact, double friction, double area) {
-  double const E = reduced_youngs_modulus(contact), G = reduced_shear_modulus(contact);
+ContactLaw law_between(ContactSettings const& contact, Body const& first, Body const& second, double friction,
+                       double area) {
+  double const E = in_series(plane_modulus(first), plane_modulus(second)),
+               G = in_series(tangential_modulus(first), tangential_modulus(second));
   double const log_e = std::log(contact.restitution);
   double const damping = -2 * std::sqrt(5.0 / 6.0) * log_e / std::sqrt(log_e * log_e + pi * pi);
   double const work = 2 * contact.surface_energy;
@@ -57,18 +62,23 @@ LawForm law_form(ContactSettings const& contact) {
   return {.reach = beyond ? Reach::beyond : attraction, .rolling = contact.rolling_model};
 }
 
-ContactLaw grain_law(ContactSettings const& contact) {
-  ContactLaw law = law_between(contact, contact.sliding_friction, 4 * pi);
+Body body_of(ContactSettings const& contact) { return {contact.youngs_modulus, contact.poisson_ratio}; }
+
+ContactLaw grain_law(ContactSettings const& contact) { return grain_law(contact, body_of(contact), body_of(contact)); }
+ContactLaw wall_law(ContactSettings const& contact) { return wall_law(contact, body_of(contact), body_of(contact)); }
+
+ContactLaw grain_law(ContactSettings const& contact, Body const& first, Body const& second) {
+  ContactLaw law = law_between(contact, first, second, contact.sliding_friction, 4 * pi);
   law.charge = -4 * pi * contact.charge_density * contact.charge_density / vacuum_permittivity;
   return law;
 }
 
-ContactLaw wall_law(ContactSettings const& contact) {
+ContactLaw wall_law(ContactSettings const& contact, Body const& grain, Body const& wall) {
   double const area = contact.wall_cohesion_area == WallCohesionArea::eq6 ? 4 * pi : 2 * pi;
   ContactSettings at_wall = contact;
   at_wall.cohesion_energy_density *= contact.wall_cohesion;
   at_wall.surface_energy *= contact.wall_cohesion;
-  ContactLaw law = law_between(at_wall, contact.wall_friction, area);
+  ContactLaw law = law_between(at_wall, grain, wall, contact.wall_friction, area);
   law.charge = pi * contact.charge_density * contact.charge_density / vacuum_permittivity;  // image in a conductor
   return law;
 }

@@ -67,9 +67,18 @@ struct Body {
   double youngs_modulus, poisson_ratio;
 };
 
+/// That of the materials in these settings.
+Body body_of(ContactSettings const& contact);
+
+/// Two grains of unlike bodies. The first has a finite Young's modulus; which is first does not matter to more than the
+/// last bit.
+ContactLaw grain_law(ContactSettings const& contact, Body const& first, Body const& second);
+/// Grain and wall; the wall may be rigid.
+ContactLaw wall_law(ContactSettings const& contact, Body const& grain, Body const& wall);
+
 /// Two grains. sjkr2: A = 2 pi d (2 R), thesis eq. 6; sjkr: half of it.
 ContactLaw grain_law(ContactSettings const& contact);
-/// Grain and wall: wall friction; A = 2 pi R d (liggghts) or 4 pi R d (eq6).
+/// Grain and wall of the same body: wall friction; A = 2 pi R d (liggghts) or 4 pi R d (eq6).
 ContactLaw wall_law(ContactSettings const& contact);
 
 /// Duration of an undamped Hertz impact of two equal grains at a relative speed: 2.868 (m^2 / (R E^2 v))^(1/5) [s].

@@ -11,6 +11,7 @@
 #include "core/progress.hpp"
 #include "core/random.hpp"
 #include "dem/machine_rig.hpp"
+#include "dem/mixture.hpp"
 #include "dem/recoater.hpp"
 #include "dem/simulation.hpp"
 
@@ -111,7 +112,7 @@ void add_cloud(PowderBed& bed, Case const& checked, std::int64_t count, std::int
                         bottom + u[2] * (std::max(top, bottom + radius) - bottom));
       if (!space.has_room(centre, radius)) continue;
       space.add(centre, radius);
-      bed.add(id, centre, radius, 0);
+      bed.add(id, centre, radius, draw_material(checked, id));
       bed.vz.back() = -fall_speed;
       break;
     }

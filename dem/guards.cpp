@@ -69,8 +69,8 @@ std::int64_t Simulation::look() {
                speed = std::max(step / dt, moving_walls_.fastest());
   double const moved = std::max(std::sqrt(seen.displacement_squared), moving_walls_.travelled());
   // a bed at rest does not stay so: an unstable step is told before anything moves
-  bool const contact_too_short = hertz_contact_time(smallest_radius_, motion_.density, std::max(speed, least_speed),
-                                                    motion_.contact) < least_steps_a_contact * dt;
+  bool const contact_too_short =
+      shortest_contact_time(motion_, smallest_radius_, std::max(speed, least_speed)) < least_steps_a_contact * dt;
   if (step > step_limit * smallest_radius_ || contact_too_short || moved > 0.5 * skin_) fail(find_fastest());
 
   moving_walls_.record(time());
@@ -227,8 +227,7 @@ Simulation::Fault Simulation::find_fastest() const {
   }
   if (fastest < 0) return {};
   double const speed = std::max({std::sqrt(fastest), moving_walls_.fastest(), least_speed});
-  double const contact_steps =
-      hertz_contact_time(smallest_radius_, motion_.density, speed, motion_.contact) / motion_.time_step;
+  double const contact_steps = shortest_contact_time(motion_, smallest_radius_, speed) / motion_.time_step;
   return {fastest,
           fmt::format(
               "grain {} moves at {:.3g} m/s at {}: {:.3g} um a step, {:.1f} steps a contact (at most a tenth of the "

@@ -6,6 +6,7 @@
 
 #include "core/random.hpp"
 #include "dem/dosing.hpp"
+#include "dem/mixture.hpp"
 
 namespace layerloop::dem {
 namespace {
@@ -79,7 +80,7 @@ void add_loose_cloud(PowderBed& bed, Case const& checked, CloudSpace space, std:
       Vec3 const centre = draw_centre(space, radius, u);
       if (!is_in_cylinder(space, centre, radius) || !slabs.has_room(centre, radius)) continue;
       slabs.add(centre, radius);
-      bed.add(id, centre, radius, 0);
+      bed.add(id, centre, radius, draw_material(checked, id));
       bed.vz.back() = -fall_speed;
       break;
     }

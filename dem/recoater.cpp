@@ -48,14 +48,16 @@ double median_radius(PowderBed const& bed) {
 }
 
 /// Grains of `before` that `after` does not hold.
-void count_overflow(PowderBed const& before, PowderBed const& after, SpreadOutcome& outcome) {
-  CompensatedSum volume;
+void count_overflow(PowderBed const& before, PowderBed const& after, Motion const& motion, SpreadOutcome& outcome) {
+  CompensatedSum volume, mass;
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (std::ranges::binary_search(after.id, before.id[i])) continue;
     ++outcome.overflow_grains;
     volume.add(before.volume(i));
+    mass.add(motion.density_of(before.material[i]) * before.volume(i));
   }
   outcome.overflow_volume = volume.value();
+  outcome.overflow_mass = mass.value();
 }
 
 /// Takes out what lies beside the zones, and what is in the way of the returning blade.
@@ -108,8 +110,7 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   double const smallest = *std::ranges::min_element(bed.radius);
   outcome.time_step = motion.time_step;
   outcome.bond_number = bond_number(median_radius(bed), motion.density, motion.contact);
-  outcome.steps_per_contact =
-      hertz_contact_time(smallest, motion.density, machine.recoating_speed, motion.contact) / motion.time_step;
+  outcome.steps_per_contact = shortest_contact_time(motion, smallest, machine.recoating_speed) / motion.time_step;
 
   Simulation stroke(motion, machine_rig(checked, substrate, bed, Tools::moving_recoater), communicator);
   stroke.scatter(bed);
@@ -138,7 +139,7 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   bed = rest.gather();
   clear_platforms(bed, checked);
   note(outcome, rest);
-  count_overflow(before, bed, outcome);
+  count_overflow(before, bed, motion, outcome);
   return outcome;
 }
 

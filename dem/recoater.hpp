@@ -18,15 +18,16 @@ struct SpreadOutcome {
       0;  ///< taken out: over the sink, thrown high, or beside the zones when the blade has passed
   std::int64_t nipped_grains = 0;  ///< of the overflow: crushed between blade and platform, see Simulation
   double overflow_volume = 0;      ///< [m^3]
+  double overflow_mass = 0;        ///< [kg]
   std::string blade_note;          ///< empty, or where and how far raised solid stands in the blade's way
   std::string stiffness_note;      ///< empty, or what softened contacts do to cohesion; see softening_note()
   std::int64_t steps = 0;
   double time_step = 0;                    ///< [s]
   double largest_overlap = 0;              ///< over the grain's diameter
   std::vector<ForceSample> force_history;  ///< of the recoater: z upwards, x along the stroke (against it: negative)
-  double blade_force = 0;        ///< largest force of the grains against the stroke [N], a mean over every few steps
-  double mean_blade_force = 0;   ///< the same, mean over the stroke [N]
-  double bond_number = 0;        ///< of the median grain by number: SJKR2 pull-off force over weight
+  double blade_force = 0;       ///< largest force of the grains against the stroke [N], a mean over every few steps
+  double mean_blade_force = 0;  ///< the same, mean over the stroke [N]
+  double bond_number = 0;  ///< of the median grain by number, of the main material: SJKR2 pull-off force over weight
   double steps_per_contact = 0;  ///< of the smallest grain at the recoating speed
 };
 

@@ -30,6 +30,9 @@ Reservoir measure_reservoir(PowderBed const& bed, MachineSettings const& machine
   for (std::size_t i = 0; i < bed.size(); ++i) {
     if (bed.x[i] < 0 || bed.x[i] >= machine.accumulation_length) continue;
     reservoir.volume += bed.volume(i);
+    auto const material = static_cast<std::size_t>(bed.material[i]);
+    if (reservoir.volume_of_material.size() <= material) reservoir.volume_of_material.resize(material + 1);
+    reservoir.volume_of_material[material] += bed.volume(i);
     diameters += 2 * bed.radius[i];
     grains += 1;
   }

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "core/case.hpp"
 #include "core/powder_bed.hpp"
 
@@ -11,6 +13,7 @@ struct Reservoir {
   double density = 0;        ///< grain volume over the zone's area times that height
   double mean_diameter = 0;  ///< by number [m]; not a number when empty
   double volume = 0;         ///< of the grains [m^3]
+  std::vector<double> volume_of_material;  ///< the same, by PowderBed::material
 };
 
 Reservoir measure_reservoir(PowderBed const& bed, MachineSettings const& machine);

@@ -9,10 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/contact_pairs.hpp"
 #include "core/error.hpp"
 #include "core/grain_size.hpp"
-#include "core/rayleigh_time.hpp"
-#include "dem/contact_effects.hpp"
 #include "dem/step_barrier.hpp"
 
 namespace layerloop::dem {
@@ -33,17 +32,36 @@ Range share(std::size_t n, int part, int parts) {
 
 double squared(double x, double y, double z) { return x * x + y * y + z * z; }
 
+double farthest_reach(std::vector<ContactLaw> const& laws, double radius) {
+  double reach = 0;
+  for (ContactLaw const& law : laws) reach = std::max(reach, reach_gap(law, radius));
+  return reach;
+}
+
+double stiffest(std::vector<ContactLaw> const& laws) {
+  return std::ranges::max(laws, {}, &ContactLaw::normal_stiffness).normal_stiffness;
+}
 }  // namespace
 
 Motion motion_of(Case const& checked) {
   double const smallest = std::ranges::min(fed_powder(checked).diameters) / 2;
-  ContactSettings const contact = contact_with_effects(checked);
-  return {.between_grains = grain_law(contact),
-          .at_walls = wall_law(contact),
-          .contact = contact,
+  std::string const& name = checked.material.name;
+  return {.between_grains = grain_law(checked, name, name),
+          .at_walls = wall_law(checked, name),
+          .contact = contact_between(checked, name, name),
           .density = checked.material.density,
-          .time_step = contact.time_step_fraction * rayleigh_time(smallest, checked.material.density, contact),
-          .grains_sleep = checked.run.grains_sleep};
+          .time_step = checked.contact.time_step_fraction * shortest_rayleigh_time(checked, smallest),
+          .grains_sleep = checked.run.grains_sleep,
+          .mixture = mixture_of(checked)};
+}
+
+double shortest_contact_time(Motion const& motion, double radius, double speed) {
+  if (motion.mixture.density.empty()) return hertz_contact_time(radius, motion.density, speed, motion.contact);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < motion.mixture.materials(); ++m)
+    shortest =
+        std::min(shortest, hertz_contact_time(radius, motion.mixture.density[m], speed, motion.mixture.contact[m]));
+  return shortest;
 }
 
 Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
@@ -53,7 +71,13 @@ Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
       decomposition_(communicator, rig_.length),
       moving_walls_(rig_.walls, communicator),
       period_{rig_.length, rig_.width},
-      laws_{law_form(motion_.contact), 1, {motion_.between_grains}} {}
+      laws_{law_form(motion_.contact), 1, {motion_.between_grains}},
+      wall_laws_{motion_.at_walls} {
+  if (motion_.mixture.density.empty()) return;
+  laws_.materials = static_cast<std::int32_t>(motion_.mixture.materials());
+  laws_.laws = motion_.mixture.between_grains;
+  wall_laws_ = motion_.mixture.at_walls;
+}
 
 void Simulation::scatter(PowderBed const& bed) {
   grains_.clear();
@@ -64,12 +88,16 @@ void Simulation::scatter(PowderBed const& bed) {
   phases_ = {};
   watch_ = {};
   if (bed.size() == 0) throw InputError("there is no grain to move (the bed is empty) raise powder.particles");
+  auto const [first, last] = std::ranges::minmax(bed.material);
+  if (laws_.materials > 1 && (first < 0 || last >= laws_.materials))
+    throw InputError(fmt::format("the bed has a grain of material {} (there are materials 0 to {}) give it one of them",
+                                 first < 0 ? first : last, laws_.materials - 1));
   auto const [smallest, largest] = std::ranges::minmax(bed.radius);
   smallest_radius_ = smallest;
   largest_radius_ = largest;
   skin_ = skin_over_smallest_radius * smallest;
-  wall_reach_ = reach_gap(motion_.at_walls, largest);
-  reach_ = std::max(reach_gap(motion_.between_grains, largest), wall_reach_);
+  wall_reach_ = farthest_reach(wall_laws_, largest);
+  reach_ = std::max(farthest_reach(laws_.laws, largest), wall_reach_);
   if (rig_.width < 4 * largest + 2 * (skin_ + reach_)) {
     throw InputError(
         fmt::format("the bed is {:.3g} um wide (a grain of {:.3g} um would meet itself around the period) "
@@ -78,11 +106,11 @@ void Simulation::scatter(PowderBed const& bed) {
   }
   if (rig_.length < 4 * largest + 2 * (skin_ + reach_))
     throw InputError("the period along x is shorter than two grains (a grain would meet itself) use a longer one");
-  unit_ = ActionUnit(motion_.between_grains.normal_stiffness, largest);
+  unit_ = ActionUnit(std::max(stiffest(laws_.laws), stiffest(wall_laws_)), largest);
   mesh_grids_ = grids_of(rig_.walls, 2 * largest);
   Range const own = share(bed.size(), communicator_.rank(), communicator_.size());
   for (std::size_t i = own.from; i < own.to; ++i) {
-    grains_.push_back(record_of(bed, i, motion_.density));
+    grains_.push_back(record_of(bed, i, motion_.density_of(bed.material[i])));
   }
   grains_.owned = grains_.size();
   grain_count_ = static_cast<std::int64_t>(bed.size());
@@ -225,7 +253,7 @@ void Simulation::evaluate(Share& share, std::size_t chunk, PhaseClock& clock, Ph
                                     near_walls.begin());
   };
   double const wall_overlap =
-      evaluate_walls(wall_contacts_, share.batch, grains_, scene(), motion_.at_walls, dt, entry(from), entry(to));
+      evaluate_walls(wall_contacts_, share.batch, grains_, scene(), wall_laws_, dt, entry(from), entry(to));
   share.watch.overlap = std::max({share.watch.overlap, overlap, wall_overlap});
   clock.add_to(times.walls);
 }

@@ -11,6 +11,7 @@
 #include "dem/contact_law.hpp"
 #include "dem/decomposition.hpp"
 #include "dem/grains.hpp"
+#include "dem/mixture.hpp"
 #include "dem/moving_walls.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/pair_contacts.hpp"
@@ -34,15 +35,24 @@ struct Rig {
 
 /// Settings of the motion; see motion_of() for those of a case.
 struct Motion {
-  ContactLaw between_grains, at_walls;
-  ContactSettings contact;    ///< for the form of the laws, and the guard on the duration of a contact
-  double density = 0;         ///< [kg/m^3]
-  double time_step = 0;       ///< [s]
+  ContactLaw between_grains, at_walls;  ///< these three: of all grains, unless there is a mixture
+  ContactSettings contact;              ///< for the form of the laws, and the guard on the duration of a contact
+  double density = 0;                   ///< [kg/m^3]
+  double time_step = 0;                 ///< [s]
   bool grains_sleep = false;  ///< whether grains that lie still are left alone until something moves near them
+  Mixture mixture = {};
+
+  /// Of a grain of this PowderBed::material [kg/m^3].
+  double density_of(std::int32_t material) const {
+    return mixture.density.empty() ? density : mixture.density.at(static_cast<std::size_t>(material));
+  }
 };
 
-/// Step: contact.time_step_fraction of the Rayleigh time of the smallest of the case's grains.
+/// Step: contact.time_step_fraction of the shortest Rayleigh time of the case's grains.
 Motion motion_of(Case const& checked);
+
+/// hertz_contact_time() of grains of this radius, the shortest over the materials [s].
+double shortest_contact_time(Motion const& motion, double radius, double speed);
 
 inline constexpr double fastest_grain = 1000;  ///< [m/s]: nothing in a recoater moves like that
 
@@ -174,6 +184,7 @@ class Simulation {
   Grains grains_;
   Period period_;
   LawTable laws_;
+  std::vector<ContactLaw> wall_laws_;  ///< by material; one: of all
   ActionUnit unit_;
   Neighbours neighbours_;
   std::vector<Share> shares_;  ///< one a thread

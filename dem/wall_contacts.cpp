@@ -122,13 +122,14 @@ void clear(WallBatch& b) {
                   &b.spring_x, &b.spring_y, &b.spring_z,     &b.turn_x,   &b.turn_y, &b.turn_z, &b.closeness})
     v->clear();
   b.touches.clear();
+  b.law.clear();
   b.key.clear();
   b.wall.clear();
 }
 
 /// All contacts of the batch at once.
-template <Reach reach, RollingModel rolling>
-void act_on(WallBatch& b, ContactLaw const& law, double dt) {
+template <Reach reach, RollingModel rolling, bool many_laws>
+void act_on(WallBatch& b, ContactLaw const* laws, double dt) {
   std::size_t const n = b.overlap.size();
   for (auto* v : {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz}) v->resize(n);
   double const *overlap = b.overlap.data(), *radius = b.radius.data(), *inverse_mass = b.inverse_mass.data();
@@ -139,14 +140,16 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   double *ux = b.spring_x.data(), *uy = b.spring_y.data(), *uz = b.spring_z.data();
   double *ox = b.turn_x.data(), *oy = b.turn_y.data(), *oz = b.turn_z.data();
   double const* closeness = b.closeness.data();
+  std::int64_t const* law_of = b.law.data();
   std::int64_t* touches = b.touches.data();
   double *fx = b.fx.data(), *fy = b.fy.data(), *fz = b.fz.data(), *tx = b.tx.data(), *ty = b.ty.data(),
          *tz = b.tz.data();
-  ContactLaw const law_here = law;
+  ContactLaw const only = laws[0];
 #pragma omp simd
   for (std::size_t c = 0; c < n; ++c) {
     double const arm = radius[c] - 0.5 * (overlap[c] > 0.0 ? overlap[c] : 0.0);
-    ContactLaw law_of_wall = law_here;
+    ContactLaw law_of_wall = only;
+    if constexpr (many_laws) law_of_wall = laws[law_of[c]];
     law_of_wall.sliding_friction = friction[c];
     ContactAction const a = act<reach, rolling>(
         law_of_wall, {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c],        vx[c],          vy[c],
@@ -169,22 +172,23 @@ void act_on(WallBatch& b, ContactLaw const& law, double dt) {
   }
 }
 
-template <Reach reach>
-void act_on(WallBatch& b, ContactLaw const& law, RollingModel rolling, double dt) {
+template <Reach reach, bool many_laws>
+void act_on(WallBatch& b, ContactLaw const* laws, RollingModel rolling, double dt) {
   if (rolling == RollingModel::cdt)
-    act_on<reach, RollingModel::cdt>(b, law, dt);
+    act_on<reach, RollingModel::cdt, many_laws>(b, laws, dt);
   else
-    act_on<reach, RollingModel::epsd2>(b, law, dt);
+    act_on<reach, RollingModel::epsd2, many_laws>(b, laws, dt);
 }
 
-void act_on(WallBatch& b, ContactLaw const& law, LawForm const& form, double dt) {
+template <bool many_laws>
+void act_on(WallBatch& b, ContactLaw const* laws, LawForm const& form, double dt) {
   switch (form.reach) {
     case Reach::touch:
-      return act_on<Reach::touch>(b, law, form.rolling, dt);
+      return act_on<Reach::touch, many_laws>(b, laws, form.rolling, dt);
     case Reach::tear_off:
-      return act_on<Reach::tear_off>(b, law, form.rolling, dt);
+      return act_on<Reach::tear_off, many_laws>(b, laws, form.rolling, dt);
     case Reach::beyond:
-      return act_on<Reach::beyond>(b, law, form.rolling, dt);
+      return act_on<Reach::beyond, many_laws>(b, laws, form.rolling, dt);
   }
 }
 
@@ -299,6 +303,7 @@ void WallBatch::reserve(std::size_t contacts) {
     v->reserve(contacts);
   key.reserve(contacts);
   wall.reserve(contacts);
+  law.reserve(contacts);
   touches.reserve(contacts);
   touched.reserve(256);
 }
@@ -356,29 +361,36 @@ bool is_near_moving_wall(WallContacts const& c, std::size_t w, MovingWalls const
 }
 
 double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, WallScene const& scene,
-                      ContactLaw const& law, double dt, std::size_t from, std::size_t to) {
+                      std::vector<ContactLaw> const& laws, double dt, std::size_t from, std::size_t to) {
   if (from == to) return 0;
   WallContacts& c = contacts;
+  bool const many = laws.size() > 1;
   clear(batch);
   for (std::size_t w = from; w < to; ++w) {
     auto const row = static_cast<std::size_t>(c.grain[w]);
     if (is_asleep(g.quiet[row])) continue;
     GrainView const grain = view_of(g, row);
+    auto const material = many ? static_cast<std::size_t>(g.material[row]) : 0;
+    double const friction = laws[material].sliding_friction;
     auto const already = batch.key.size();
     auto const end = static_cast<std::size_t>(c.begin[w + 1]);
     for (auto k = static_cast<std::size_t>(c.begin[w]); k < end;) {
       if (!is_triangle(c.candidates[k].key)) {
-        touch_primitive(c, w, batch, grain, scene, law.sliding_friction, c.candidates[k++]);
+        touch_primitive(c, w, batch, grain, scene, friction, c.candidates[k++]);
         continue;
       }
       std::size_t last = k;
       while (last < end && c.candidates[last].wall == c.candidates[k].wall) ++last;
-      touch_mesh(c, w, batch, grain, scene, law.sliding_friction, k, last);
+      touch_mesh(c, w, batch, grain, scene, friction, k, last);
       k = last;
     }
     c.spring_count[w] = static_cast<std::int32_t>(batch.key.size() - already);
+    if (many) batch.law.resize(batch.key.size(), static_cast<std::int64_t>(material));
   }
-  act_on(batch, law, scene.form, dt);
+  if (many)
+    act_on<true>(batch, laws.data(), scene.form, dt);
+  else
+    act_on<false>(batch, laws.data(), scene.form, dt);
   batch.force.resize(scene.walls.size());
   double worst = 0;
   std::size_t at = 0;

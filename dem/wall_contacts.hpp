@@ -51,6 +51,7 @@ struct WallBatch {
   std::vector<double> fx, fy, fz, tx, ty, tz;
   std::vector<std::int64_t> key;
   std::vector<std::int32_t> wall;
+  std::vector<std::int64_t> law;         ///< by material; only where there are several
   std::vector<std::int64_t> touches;     ///< before, then after the step
   std::vector<TriangleContact> touched;  ///< scratch of one grain
   WallForces force;                      ///< on walls that move, until they are taken over
@@ -80,9 +81,10 @@ void append_springs(WallContacts const& contacts, Grains const& grains, std::vec
 bool is_near_moving_wall(WallContacts const& contacts, std::size_t w, MovingWalls const& moving);
 
 /// Contacts of the grains [from, to) of the list. No allocation once the batch has grown.
+/// \param laws  by material; one: of all grains
 /// \return largest overlap over the grain's diameter
 double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& grains, WallScene const& scene,
-                      ContactLaw const& law, double dt, std::size_t from, std::size_t to);
+                      std::vector<ContactLaw> const& laws, double dt, std::size_t from, std::size_t to);
 
 /// Distance of a grain's centre from a candidate, now [m].
 double distance_to(WallCandidate const& candidate, WallScene const& scene, Vec3 const& centre);

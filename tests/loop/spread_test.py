@@ -148,6 +148,33 @@ class Spread(unittest.TestCase):
         self.assertEqual(ledger["particles_fed"], len(left) + 100)
         self.assertLess(ledger["mass_relative_error"], 1e-12)
 
+    def test_a_mixture_is_weighed_grain_by_grain(self):
+        out = self.folder / "mixture"
+        done = layerloop("spread", CASE, "-o", out, "--quiet", "--threads", 1, "--set", "run.replicates=1", "--set",
+                         "powder.mixture.IN718=0.4", "--set", "powder.mixture.Al=0.6", "--set",
+                         "contact.Al.wall.sliding_friction=0.3")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((out / "summary.json").read_text())
+
+        def masses(layer):
+            with h5py.File(out / f"bed_{layer:04}.h5") as file:
+                x, radius, material = (file[f"bed/{name}"][()] for name in ("position", "radius", "material"))
+            mass = 4 / 3 * math.pi * radius**3 * np.array([8190, 2700])[material]  # IN718, Al
+            return x[:, 0], mass, material
+
+        x, mass, material = masses(1)
+        spread = (x >= 200e-6) & (x < 400e-6)  # layer 1 lies on bare plate: every grain in the zone is new
+        shares = summary["layers"][0]["by_material"]
+        share = mass[spread & (material == 1)].sum() / mass[spread].sum()
+        self.assertAlmostEqual(shares["Al"]["mass_share_layer"], share, delta=1e-12)
+        self.assertAlmostEqual(shares["Al"]["mass_share_layer"], 0.6, delta=4 * shares["Al"]["mass_share_layer_u_num"])
+        for kind in ("mass_share_fed", "mass_share_layer"):
+            self.assertAlmostEqual(shares["Al"][kind] + shares["IN718"][kind], 1, delta=1e-12)
+        ledger = summary["ledger"]
+        self.assertAlmostEqual(ledger["mass_bed"] / masses(2)[1].sum(), 1, delta=1e-12)
+        self.assertLess(ledger["mass_relative_error"], 1e-12)
+        self.assertNotIn("by_material", self.seeds[0]["layers"][0])
+
     def test_a_bed_beside_the_machine_is_bad_input(self):
         bed = self.folder / "beside.csv"
         bed.write_text("# units=m\n# x,y,z,radius\n1e-4,1e-5,1e-5,1e-5\n5e-3,1e-5,1e-5,1e-5\n")
