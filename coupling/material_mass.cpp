@@ -1,7 +1,6 @@
 #include "coupling/material_mass.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/compensated_sum.hpp"
@@ -9,22 +8,21 @@
 namespace layerloop::coupling {
 namespace {
 
-struct GrainMass {
-  std::size_t material;
-  double mass;
-};
-
-/// Share of one material in the mass of grains, and its standard error if they were drawn at random from a large
-/// powder: that of a ratio of sums, s = sum m_i t_i / sum m_i, is sqrt(sum m_i^2 (t_i - s)^2) / sum m_i.
-std::array<double, 2> share_of(std::size_t material, std::vector<GrainMass> const& grains) {
-  double all = 0, own = 0, squares = 0;
-  for (GrainMass const& g : grains) {
-    all += g.mass;
-    own += g.material == material ? g.mass : 0.0;
+/// Standard deviation of the share of a material in the mass of grains of these volumes that are drawn at random from
+/// powder.mixture. To first order s = sum m_i t_i / sum m_i scatters by sqrt(sum <m_i^2 (t_i - w)^2>) / <sum m_i>;
+/// sizes do not depend on the material.
+double share_scatter(std::vector<Material> const& metals, std::size_t material, std::vector<double> const& volumes,
+                     Case const& checked) {
+  double volume = 0, volume_squares = 0, density = 0, squares = 0, number = 0;
+  for (double const v : volumes) volume += v, volume_squares += v * v;
+  double const w = checked.powder.mixture.at(metals[material].name);
+  for (std::size_t m = 0; m < metals.size(); ++m) {
+    double const rho = metals[m].density, n = checked.powder.mixture.at(metals[m].name) / rho;  // shares by number
+    number += n;
+    density += n * rho;
+    squares += n * rho * rho * std::pow((m == material ? 1.0 : 0.0) - w, 2);
   }
-  double const share = own / all;
-  for (GrainMass const& g : grains) squares += std::pow(g.mass * ((g.material == material ? 1.0 : 0.0) - share), 2);
-  return {share, std::sqrt(squares) / all};
+  return std::sqrt(squares * number * volume_squares) / (density * volume);
 }
 
 }  // namespace
@@ -47,18 +45,18 @@ double sum_of(std::vector<double> const& masses) {
 
 std::vector<MaterialShare> material_shares(PowderBed const& bed, std::vector<std::int64_t> const& before,
                                            std::vector<double> const& mass_fed, Case const& checked) {
-  std::vector<GrainMass> added;
+  std::vector<double> volumes, mass(1 + checked.admixtures.size());
   for (std::size_t i = 0; i < bed.size(); ++i) {
     bool const inside = bed.x[i] >= checked.machine.deposition_begin() && bed.x[i] < checked.machine.deposition_end();
-    if (inside && !std::ranges::binary_search(before, bed.id[i]))
-      added.push_back({static_cast<std::size_t>(bed.material[i]), checked.density(bed.material[i]) * bed.volume(i)});
+    if (!inside || std::ranges::binary_search(before, bed.id[i])) continue;
+    volumes.push_back(bed.volume(i));
+    mass.at(static_cast<std::size_t>(bed.material[i])) += checked.density(bed.material[i]) * bed.volume(i);
   }
+  std::vector<Material> const metals = checked.materials();
   std::vector<MaterialShare> shares;
-  for (Material const& metal : checked.materials()) {
-    std::size_t const m = shares.size();
-    auto const [share, error] = share_of(m, added);
-    shares.push_back({metal.name, mass_fed.at(m) / sum_of(mass_fed), share, error});
-  }
+  for (std::size_t m = 0; m < metals.size(); ++m)
+    shares.push_back({metals[m].name, mass_fed.at(m) / sum_of(mass_fed), mass[m] / sum_of(mass),
+                      share_scatter(metals, m, volumes, checked)});
   return shares;
 }
 

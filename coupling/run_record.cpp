@@ -354,7 +354,7 @@ std::map<std::string, std::string> definitions(ReportExtras const& extras) {
       {"by_material.*.mass_share_layer",
        "share of the material in the mass of the grains that the layer added to the deposition zone"},
       {"by_material.*.mass_share_layer_u_num",
-       "standard error of that share if so many grains were drawn at random from a large powder"},
+       "standard deviation of that share among grains of these sizes that are drawn at random from powder.mixture"},
       {"grains_moved", "grains that were moved clear of the new surface"},
       {"surface_height_correction", "mean change of the surface by levelling of the melt and resettling of grains"},
   };

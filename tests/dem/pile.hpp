@@ -42,6 +42,21 @@ struct Pile {
   }
 };
 
+/// Makes the pile one of two materials that are unlike in everything.
+inline void mix(Pile& pile) {
+  Case& c = pile.checked;
+  c.material.name = "light";
+  c.admixtures = {c.material};
+  c.admixtures[0].name = "heavy";
+  c.admixtures[0].density *= 3;
+  c.powder.mixture = {{"light", 0.4}, {"heavy", 0.6}};
+  c.bodies["heavy"].youngs_modulus = 0.5e9;
+  c.bodies[walls_name].youngs_modulus = 2e9;
+  c.pairs[{"heavy", "light"}].sliding_friction = 0.3;
+  c.pairs[{"heavy", walls_name}].restitution = 0.5;
+  for (std::size_t i = 0; i < pile.bed.size(); ++i) pile.bed.material[i] = draw_material(c, pile.bed.id[i]);
+}
+
 /// Number of values whose bits differ.
 inline std::int64_t differences(PowderBed const& a, PowderBed const& b) {
   if (a.id != b.id || a.contacts.size() != b.contacts.size()) return 1 << 20;

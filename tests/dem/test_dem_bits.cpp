@@ -19,6 +19,19 @@ TEST(Bits, DoNotDependOnThreads) {
   EXPECT_EQ(differences(one, two), 0);
 }
 
+TEST(Bits, DoNotDependOnThreadsOrAStopInAMixture) {
+  Pile pile(900);
+  mix(pile);
+  pile.rig.walls.blocks[1].motion.velocity = 0;
+  omp_set_num_threads(1);
+  PowderBed const one = pile.run(alone(), 6000);
+  omp_set_num_threads(2);
+  PowderBed const two = pile.run(alone(), 6000, 2917);
+  omp_set_num_threads(1);
+  EXPECT_GT(one.contacts.size(), 20U);
+  EXPECT_EQ(differences(one, two), 0);
+}
+
 TEST(Bits, DoNotDependOnAStopInBetween) {
   omp_set_num_threads(1);
   Pile pile(160);

@@ -77,21 +77,13 @@ TEST(Bits, DoNotDependOnRanksWhenAWallYields) {
 }
 
 TEST(Bits, DoNotDependOnRanksInAMixture) {
-  Pile pile(160);
-  pile.checked.material.name = "A";
-  pile.checked.admixtures = {Material{}};
-  pile.checked.admixtures[0].name = "B";
-  pile.checked.admixtures[0].density = 3 * pile.checked.material.density;
-  pile.checked.powder.mixture = {{"A", 0.4}, {"B", 0.6}};
-  pile.checked.bodies["B"].youngs_modulus = 0.5e9;
-  pile.checked.bodies[walls_name].youngs_modulus = 2e9;
-  pile.checked.pairs[{"A", "B"}].sliding_friction = 0.3;
-  for (std::size_t i = 0; i < pile.bed.size(); ++i) pile.bed.material[i] = draw_material(pile.checked, pile.bed.id[i]);
   omp_set_num_threads(1);
-  pile.bed = pile.run(alone(), 8000);
-  PowderBed const single = on_ranks(1, pile, 2000), two = on_ranks(2, pile, 2000), four = on_ranks(4, pile, 2000);
+  Pile pile(160);
+  mix(pile);
+  pile.bed = pile.run(alone(), 24000);
+  PowderBed const single = on_ranks(1, pile, 1500), two = on_ranks(2, pile, 1500), four = on_ranks(4, pile, 1500);
   if (Communicator().rank() != 0) return;
-  EXPECT_GT(single.contacts.size(), 40U);
+  EXPECT_GT(single.contacts.size(), 60U);
   EXPECT_EQ(differences(single, two), 0);
   EXPECT_EQ(differences(single, four), 0);
 }
