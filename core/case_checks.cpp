@@ -8,8 +8,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/contact_pairs.hpp"
 #include "core/grain_size.hpp"
+#include "core/rayleigh_time.hpp"
 #include "core/units.hpp"
 
 namespace layerloop {

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
-
-#include "core/rayleigh_time.hpp"
 
 namespace layerloop {
 namespace {
@@ -38,13 +35,6 @@ ContactSettings contact_of_pair(Case const& checked, std::string const& first, s
   if (second == walls_name)
     contact.sliding_friction = given_of(checked, first, first).sliding_friction.value_or(contact.sliding_friction);
   return contact;
-}
-
-double shortest_rayleigh_time(Case const& checked, double radius) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (Material const& metal : checked.materials())
-    shortest = std::min(shortest, rayleigh_time(radius, metal.density, contact_of_body(checked, metal.name)));
-  return shortest;
 }
 
 }  // namespace layerloop

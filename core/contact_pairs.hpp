@@ -12,7 +12,4 @@ ContactSettings contact_of_body(Case const& checked, std::string const& body);
 /// is the friction between them.
 ContactSettings contact_of_pair(Case const& checked, std::string const& first, std::string const& second);
 
-/// Rayleigh time of a grain of this radius, the shortest over the materials of the powder [s].
-double shortest_rayleigh_time(Case const& checked, double radius);
-
 }  // namespace layerloop

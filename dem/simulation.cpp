@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/contact_pairs.hpp"
 #include "core/error.hpp"
 #include "core/grain_size.hpp"
+#include "core/rayleigh_time.hpp"
 #include "dem/step_barrier.hpp"
 
 namespace layerloop::dem {

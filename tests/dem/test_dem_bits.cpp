@@ -24,9 +24,9 @@ TEST(Bits, DoNotDependOnThreadsOrAStopInAMixture) {
   mix(pile);
   pile.rig.walls.blocks[1].motion.velocity = 0;
   omp_set_num_threads(1);
-  PowderBed const one = pile.run(alone(), 6000);
+  PowderBed const one = pile.run(alone(), 12000);
   omp_set_num_threads(2);
-  PowderBed const two = pile.run(alone(), 6000, 2917);
+  PowderBed const two = pile.run(alone(), 12000, 5917);
   omp_set_num_threads(1);
   EXPECT_GT(one.contacts.size(), 20U);
   EXPECT_EQ(differences(one, two), 0);
