@@ -58,8 +58,11 @@ void dose(Run const& run, BuildState& build) {
   Ledger& ledger = build.record.ledger;
   std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
   double const volume_before = total_volume(build.bed);
-  build.next_id = dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count,
-                            build.next_id, run.comm, run.show_progress());
+  dem::EnergyLedger energy;
+  build.next_id =
+      dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count, build.next_id,
+                run.comm, run.show_progress(), &energy);
+  book_motion(ledger, energy);
   ledger.particles_fed += count;
   ledger.mass_fed += run.checked.material.density * (total_volume(build.bed) - volume_before);
 }
@@ -101,6 +104,7 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   layer.grains_nipped = sweep.nipped_grains;
 
   Ledger& ledger = build.record.ledger;
+  book_motion(ledger, sweep.energy);
   ledger.particles_overflow += sweep.overflow_grains;
   ledger.mass_overflow += run.checked.material.density * sweep.overflow_volume;
 }
