@@ -153,6 +153,7 @@ struct RunSettings {
   std::int64_t bins = 15;       ///< slices of the deposition zone along x in which a layer is measured
   std::int64_t replicates = 1;  ///< runs with seeds seed, seed + 1, ...
   bool grains_sleep = false;
+  bool energy_ledger = false;
   bool checkpoint = true;
   bool pictures = true;
   bool unsafe_time_step = false;

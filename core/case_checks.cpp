@@ -35,6 +35,7 @@ class CaseChecks {
     pairs();
     effects();
     time_step();
+    energy_ledger();
     material();
     calibrate();
     if (!c_.has_machine()) return;
@@ -199,6 +200,20 @@ class CaseChecks {
           contact.time_step_fraction, format_quantity(contact.time_step_fraction * limit, Dimension::time),
           format_quantity(limit, Dimension::time), length(smallest()));
     }
+  }
+
+  /// Contacts that act apart are not booked.
+  void energy_ledger() const {
+    if (!c_.run.energy_ledger || !known({"run.energy_ledger", "contact.cohesion"})) return;
+    char const* apart = nullptr;
+    if (c_.contact.cohesion == Cohesion::jkr) apart = "contact.cohesion = \"jkr\"";
+    for (char const* effect : {"capillary_bridge", "electrostatic_charge"})
+      if (c_.effect_strength(effect) > 0) apart = effect;
+    if (!c_.admixtures.empty() || !c_.bodies.empty() || !c_.pairs.empty())
+      report("run.energy_ledger",
+             "= true (none is kept for materials of their own: [powder.mixture], [contact.A]) leave one of them out");
+    if (apart) report("run.energy_ledger", "= true (none is kept with {}) leave one of them out", apart);
+    if (!c_.has_machine()) report("run.energy_ledger", "= true (none is kept while calibrating) leave it out");
   }
 
   void machine() const {

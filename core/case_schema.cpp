@@ -260,6 +260,8 @@ std::vector<CaseKey> heat_and_run_rows() {
        "Runs with the seeds seed, seed + 1, ...; the summary then gives means with 95 % intervals (3 or more advised)."},
       {"run", "grains_sleep", at<run, &R::grains_sleep>, D::none, {}, Need::never, "true",
        "Whether grains that lie still are left alone until something moves near them."},
+      {"run", "energy_ledger", at<run, &R::energy_ledger>, D::none, {}, Need::never, "false",
+       "Whether work, energy and dissipation of the grains are booked and must balance; their motion takes two to six times as long."},
       {"run", "checkpoint", at<run, &R::checkpoint>, D::none, {}, Need::never, "true",
        "Whether a checkpoint is written after each layer."},
       {"run", "pictures", at<run, &R::pictures>, D::none, {}, Need::never, "true",

@@ -59,8 +59,10 @@ void dose(Run const& run, BuildState& build) {
   Ledger& ledger = build.record.ledger;
   std::int64_t const count = build.layers_done == 1 ? run.checked.powder.particles : dose_count(run.checked);
   std::vector<double> const before = mass_by_material(build.bed, run.checked);
+  dem::EnergyLedger energy;
   build.next_id = dem::dose(build.bed, dem::case_of_layer(run.checked, build.layers_done), build.substrate, count,
-                            build.next_id, run.comm, run.show_progress());
+                            build.next_id, run.comm, run.show_progress(), &energy);
+  book_motion(ledger, energy);
   ledger.particles_fed += count;
   std::vector<double> const after = mass_by_material(build.bed, run.checked);
   for (std::size_t m = 0; m < after.size(); ++m) build.record.mass_fed_by_material.at(m) += after[m] - before[m];
@@ -111,6 +113,7 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
   layer.grains_nipped = sweep.nipped_grains;
 
   Ledger& ledger = build.record.ledger;
+  book_motion(ledger, sweep.energy);
   ledger.particles_overflow += sweep.overflow_grains;
   ledger.mass_overflow += sweep.overflow_mass;
   if (!run.checked.admixtures.empty())

@@ -11,12 +11,12 @@
 namespace layerloop::coupling {
 namespace {
 
-void require(double error, double limit, char const* what) {
+constexpr char const* report_it = "This is a fault of the program: please report it with the case file.";
+
+void require(double error, double limit, char const* what, char const* remedy = report_it) {
   if (error <= limit) return;  // also fails on NaN
-  throw PhysicsError(
-      fmt::format("the ledger of {} does not close (relative error {:.2e}, limit {:.0e}) This is a fault of the "
-                  "program: please report it with the case file.",
-                  what, error, limit));
+  throw PhysicsError(fmt::format("the ledger of {} does not close (relative error {:.2e}, limit {:.0e}) {}", what,
+                                 error, limit, remedy));
 }
 
 }  // namespace
@@ -38,6 +38,23 @@ void book_heat(Ledger& ledger, thermal::HeatOutcome const& heat) {
   ledger.mass_evaporated += heat.mass_evaporated;
 }
 
+void book_motion(Ledger& ledger, dem::EnergyLedger const& energy) {
+  ledger.energy_wall_work += energy.wall_work;
+  ledger.energy_kinetic += energy.kinetic;
+  ledger.energy_potential += energy.potential;
+  ledger.energy_elastic += energy.elastic;
+  ledger.energy_carried_out += energy.carried_out;
+  ledger.energy_dissipated_normal += energy.dissipated_normal;
+  ledger.energy_dissipated_tangential += energy.dissipated_tangential;
+  ledger.energy_dissipated_rolling += energy.dissipated_rolling;
+  ledger.energy_dissipated_gas += energy.dissipated_gas;
+  ledger.energy_dissipated_sleep += energy.dissipated_sleep;
+  ledger.energy_residual += energy.residual;
+  ledger.energy_work_done += energy.work_done;
+  if (ledger.energy_work_done > 0)
+    ledger.energy_relative_error_dem = std::abs(ledger.energy_residual) / ledger.energy_work_done;
+}
+
 void audit(BuildState& build, Case const& checked) {
   Ledger& ledger = build.record.ledger;
   ledger.particles_bed = static_cast<std::int64_t>(build.bed.size());
@@ -53,6 +70,8 @@ void audit(BuildState& build, Case const& checked) {
   require(ledger.ray_energy_relative_error, 1e-12, "light");
   if (ledger.power_incident > 0) require(ledger.power_residual / ledger.power_incident, 1e-6, "light that was cut off");
   require(ledger.heat_energy_relative_error, 1e-6, "heat");
+  require(ledger.energy_relative_error_dem, 1e-3, "the energy of the grains",
+          "The motion is not resolved: lower contact.time_step_fraction, or set run.energy_ledger = false.");
 }
 
 }  // namespace layerloop::coupling

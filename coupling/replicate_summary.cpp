@@ -72,7 +72,7 @@ json merged_ledger(std::vector<json> const& ledgers) {
   json into = json::object();
   for (auto const& [key, first] : ledgers.front().items()) {
     std::vector<double> const values = numbers(values_of(ledgers, key));
-    bool const worst = key.ends_with("_relative_error");
+    bool const worst = key.ends_with("_relative_error") || key.ends_with("_relative_error_dem");
     bool const mean = key.starts_with("power_") || key == "surface_height_correction";
     double const sum = sample_of(values).mean * static_cast<double>(values.size());
     if (first.is_number_integer()) {

@@ -182,6 +182,19 @@ void members(Of<Ledger> auto& ledger, Visit&& visit) {
   visit("heat_out", ledger.heat_out);
   visit("heat_energy_relative_error", ledger.heat_energy_relative_error);
   visit("surface_height_correction", ledger.surface_height_correction);
+  visit("energy_wall_work", ledger.energy_wall_work);
+  visit("energy_kinetic", ledger.energy_kinetic);
+  visit("energy_potential", ledger.energy_potential);
+  visit("energy_elastic", ledger.energy_elastic);
+  visit("energy_carried_out", ledger.energy_carried_out);
+  visit("energy_dissipated_normal", ledger.energy_dissipated_normal);
+  visit("energy_dissipated_tangential", ledger.energy_dissipated_tangential);
+  visit("energy_dissipated_rolling", ledger.energy_dissipated_rolling);
+  visit("energy_dissipated_gas", ledger.energy_dissipated_gas);
+  visit("energy_dissipated_sleep", ledger.energy_dissipated_sleep);
+  visit("energy_residual", ledger.energy_residual);
+  visit("energy_work_done", ledger.energy_work_done);
+  visit("energy_relative_error_dem", ledger.energy_relative_error_dem);
 }
 
 template <class Visit>
@@ -303,6 +316,16 @@ json layer_summary(LayerRecord const& layer, Case const& checked) {
   return entry;
 }
 
+/// Without the energy of the grains where it was not booked.
+json ledger_summary(Ledger const& ledger, Case const& checked) {
+  json entries = encode(ledger);
+  if (checked.run.energy_ledger) return entries;
+  json kept = json::object();
+  for (auto const& [key, value] : entries.items())
+    if (!key.starts_with("energy_")) kept[key] = value;
+  return kept;
+}
+
 /// A number that is not finite has a word in the record, and is nothing in a summary.
 void blank_what_is_not_finite(json& value) {
   if (value == "nan" || value == "inf" || value == "-inf") value = nullptr;
@@ -355,6 +378,12 @@ std::map<std::string, std::string> definitions(ReportExtras const& extras) {
        "share of the material in the mass of the grains that the layer added to the deposition zone"},
       {"by_material.*.mass_share_layer_u_num",
        "standard deviation of that share among grains of these sizes that are drawn at random from powder.mixture"},
+      {"energy_relative_error_dem",
+       "residual of the energy of the moving grains over the work that moving walls and gravity did on "
+       "them; what was moved between strokes as one body (piston, plate) is left out"},
+      {"energy_dissipated_tangential",
+       "slip, damping, and what tangential springs lose as the contact under them shrinks"},
+      {"energy_carried_out", "kinetic, potential and elastic energy of grains that were taken out during a stroke"},
       {"grains_moved", "grains that were moved clear of the new surface"},
       {"surface_height_correction", "mean change of the surface by levelling of the melt and resettling of grains"},
   };
@@ -371,7 +400,7 @@ json summary(Case const& checked, RunRecord const& record, ReportExtras const& e
     all.update(encode(record.layers.back().stroke));
     all["bins"] = bins_summary(record.layers.back());
   }
-  all["ledger"] = encode(record.ledger);
+  all["ledger"] = ledger_summary(record.ledger, checked);
   blank_what_is_not_finite(all);
   all["verb"] = spreading ? "spread" : "run";
   all["case"] = checked.name;

@@ -24,6 +24,12 @@ struct Ledger {
   double power_rescaling = 0;  ///< factor - 1 that was applied to the absorbed power
   double heat_in = 0, heat_stored = 0, heat_out = 0, heat_energy_relative_error = 0;  ///< [J]
   double surface_height_correction = 0;  ///< mean change of the surface by levelling and resettling [m]
+  // Of the moving grains [J], summed over all layers, with run.energy_ledger; see dem::EnergyLedger.
+  double energy_wall_work = 0, energy_kinetic = 0, energy_potential = 0, energy_elastic = 0, energy_carried_out = 0;
+  double energy_dissipated_normal = 0, energy_dissipated_tangential = 0, energy_dissipated_rolling = 0,
+         energy_dissipated_gas = 0, energy_dissipated_sleep = 0;
+  double energy_residual = 0, energy_work_done = 0;
+  double energy_relative_error_dem = 0;  ///< residual over work done
 };
 
 /// Transverse cut (y-z) through the heat grid at mid-track, after the exposure. Shapes: ny * nz, y fastest.

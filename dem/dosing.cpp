@@ -131,7 +131,7 @@ void settle(Simulation& simulation, double longest, char const* stage, bool show
 }
 
 std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count,
-                  std::int64_t next_id, Communicator const& communicator, bool show_progress) {
+                  std::int64_t next_id, Communicator const& communicator, bool show_progress, EnergyLedger* energy) {
   bool const lifts = count == 0 && checked.machine.dosing == Dosing::feed;
   if (lifts) raise_feed(bed, checked);
   Rig const rig = machine_rig(checked, substrate, bed, lifts ? Tools::parked : Tools::parked_and_gate);
@@ -140,6 +140,7 @@ std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& su
   std::size_t const fed = bed.size();
   simulation.scatter(bed);
   settle(simulation, longest_settling, "dose", show_progress && communicator.is_root());
+  if (energy && checked.run.energy_ledger) *energy += simulation.energy();
   bed = simulation.gather();
   if (bed.size() != fed)
     throw PhysicsError(

@@ -6,6 +6,7 @@
 #include "core/communicator.hpp"
 #include "core/powder_bed.hpp"
 #include "core/triangle_surface.hpp"
+#include "dem/energy_ledger.hpp"
 
 namespace layerloop::dem {
 
@@ -20,10 +21,12 @@ void add_cloud(PowderBed& bed, Case const& checked, std::int64_t count, std::int
 
 /// Feeds the accumulation zone between the parked recoater and a gate, and lets everything come to rest: `count` new
 /// grains rain into it; with count = 0 and Dosing::feed the piston rises by one dose first (see case_of_layer).
+/// \param energy  where a ledger is kept and this is given: the energy of it is added here
 /// Collective; every rank gets the same bed. \return the next free id \throws PhysicsError a guard of Simulation;
 /// StoppedBySignal
 std::int64_t dose(PowderBed& bed, Case const& checked, TriangleSurface const& substrate, std::int64_t count,
-                  std::int64_t next_id, Communicator const& communicator, bool show_progress);
+                  std::int64_t next_id, Communicator const& communicator, bool show_progress,
+                  EnergyLedger* energy = nullptr);
 
 class Simulation;
 

@@ -26,6 +26,14 @@ std::string place(Grains const& g, std::size_t i) {
 }
 }  // namespace
 
+template <class Change>
+void Simulation::give_to(HeldEnergy& account, Change const& change) {
+  if (!motion_.keeps_energy_ledger) return change();
+  account += held_energy();
+  change();
+  account -= held_energy();
+}
+
 bool Simulation::is_inside(std::size_t i) const {
   GrainState const& g = grains_[i];
   return g.x > rig_.x_range[0] && g.x < rig_.x_range[1] && g.z > rig_.z_range[0] && g.z < rig_.z_range[1];
@@ -97,11 +105,14 @@ void Simulation::check_sleep() {
     near_moving_wall[row] = is_near_moving_wall(wall_contacts_, w, moving_walls_);
   }
   double const interval = static_cast<double>(steps_between_checks + steps_between_looks) * motion_.time_step;
-  bool const changed = update_sleep(grains_, neighbours_, near_moving_wall, period_, interval);
-  if (!communicator_.any(changed)) return;
-  decomposition_.update_ghosts(grains_);  // those that fell asleep were stopped
-  decomposition_.update_ghost_sleep(grains_);
-  share_out(team_.threads());
+  bool changed = false;
+  give_to(lost_to_sleep_, [&] {
+    changed = communicator_.any(update_sleep(grains_, neighbours_, near_moving_wall, period_, interval));
+    if (!changed) return;
+    decomposition_.update_ghosts(grains_);  // those that fell asleep were stopped
+    decomposition_.update_ghost_sleep(grains_);
+  });
+  if (changed) share_out(team_.threads());
 }
 
 std::int64_t Simulation::take_out(std::vector<char> const& leaves) {
@@ -115,7 +126,7 @@ std::int64_t Simulation::take_out(std::vector<char> const& leaves) {
   grain_count_ -= gone;
   if (grain_count_ == 0)
     throw PhysicsError("every grain left over the sink (nothing is left to spread) check machine and powder");
-  rebuild();
+  give_to(carried_out_, [&] { rebuild(); });
   return gone;
 }
 

@@ -32,6 +32,7 @@ void MovingWalls::start() {
   yield_.assign(motion_.size(), {});
   poses_.clear();
   for (WallMotion const& m : motion_) poses_.push_back(pose_at(m, 0));
+  before_ = poses_;
   history_.clear();
   force_sum_.assign(motion_.size(), {});
   summed_steps_ = 0;
@@ -47,6 +48,7 @@ void MovingWalls::advance(double time, double dt, std::vector<WallForces*> const
   for (std::size_t wall = 0; wall < motion_.size(); ++wall)
     for (std::size_t d = 0; d < 2; ++d) force_sum_[wall][d] += step_force_[wall][d];
   ++summed_steps_;
+  before_ = poses_;
   if (yields_ && communicator_.size() > 1)
     MPI_Allreduce(MPI_IN_PLACE, step_force_.data(), static_cast<int>(2 * step_force_.size()), MPI_INT64_T, MPI_SUM,
                   communicator_.handle());
@@ -67,6 +69,19 @@ void MovingWalls::advance(double time, double dt, std::vector<WallForces*> const
       pose.path += y.path;
     }
   }
+}
+
+Vec3 MovingWalls::last_step(std::size_t wall) const {
+  return {poses_[wall].dx - before_[wall].dx, 0, poses_[wall].dz - before_[wall].dz};
+}
+
+MovingWalls MovingWalls::half_a_step_back() const {
+  MovingWalls back = *this;
+  for (std::size_t wall = 0; wall < poses_.size(); ++wall) {
+    back.poses_[wall].dx -= 0.5 * last_step(wall).x();
+    back.poses_[wall].dz -= 0.5 * last_step(wall).z();
+  }
+  return back;
 }
 
 double MovingWalls::fastest() const {

@@ -33,6 +33,8 @@ class MovingWalls {
   /// \param parts  forces of the step before, part by part (of the threads); taken over and set to zero
   void advance(double time, double dt, std::vector<WallForces*> const& parts);
   std::vector<WallPose> const& poses() const { return poses_; }
+  Vec3 last_step(std::size_t wall) const;  ///< way of a wall in the step that ended last [m]
+  MovingWalls half_a_step_back() const;    ///< the same walls in the middle of that step
 
   /// Speed of the fastest wall, shaking and yielding included [m/s].
   double fastest() const;
@@ -52,8 +54,8 @@ class MovingWalls {
   std::vector<WallMotion> motion_;
   std::vector<char> moves_;
   std::vector<Yield> yield_;
-  std::vector<WallPose> poses_, marked_;
-  WallForces step_force_, force_sum_;  ///< of this rank: last step, steps since the last record
+  std::vector<WallPose> poses_, before_, marked_;  ///< now, a step ago, at mark()
+  WallForces step_force_, force_sum_;              ///< of this rank: last step, steps since the last record
   std::int64_t summed_steps_ = 0;
   std::vector<ForceSample> history_;
   bool yields_ = false;

@@ -127,6 +127,7 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
       watch(stroke.gather(), machine.recoating_speed * stroke.time());
   }
   bed = stroke.gather();
+  if (checked.run.energy_ledger) outcome.energy = stroke.energy();
   note(outcome, stroke);
   note_forces(outcome, stroke);
 
@@ -137,6 +138,7 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   rest.scatter(bed);
   settle(rest, longest_settling, "settle", show_progress && communicator.is_root());
   bed = rest.gather();
+  if (checked.run.energy_ledger) outcome.energy += rest.energy();
   clear_platforms(bed, checked);
   note(outcome, rest);
   count_overflow(before, bed, motion, outcome);

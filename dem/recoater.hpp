@@ -8,6 +8,7 @@
 #include "core/communicator.hpp"
 #include "core/powder_bed.hpp"
 #include "core/triangle_surface.hpp"
+#include "dem/energy_ledger.hpp"
 #include "dem/moving_walls.hpp"
 
 namespace layerloop::dem {
@@ -29,6 +30,7 @@ struct SpreadOutcome {
   double mean_blade_force = 0;  ///< the same, mean over the stroke [N]
   double bond_number = 0;  ///< of the median grain by number, of the main material: SJKR2 pull-off force over weight
   double steps_per_contact = 0;  ///< of the smallest grain at the recoating speed
+  EnergyLedger energy;           ///< of stroke and rest, where a ledger is kept
 };
 
 /// Sees the bed during the stroke, on every rank. \param blade_front  x of the recoater's foremost line [m]

@@ -52,6 +52,7 @@ Motion motion_of(Case const& checked) {
           .density = checked.material.density,
           .time_step = checked.contact.time_step_fraction * shortest_rayleigh_time(checked, smallest),
           .grains_sleep = checked.run.grains_sleep,
+          .keeps_energy_ledger = checked.run.energy_ledger,
           .mixture = mixture_of(checked)};
 }
 
@@ -120,6 +121,7 @@ void Simulation::scatter(PowderBed const& bed) {
   if (Fault const lost = find_lost_grain(); communicator_.any(!lost.text.empty())) fail(lost);
   rebuild();
   check_first_overlaps();
+  open_energy_ledger();
 }
 
 void Simulation::append_all_springs(std::vector<LocalSpring>& springs) const {
@@ -213,6 +215,7 @@ void Simulation::share_out(int shares) {
     share.actions.assign(NearPairs::ring, {});
     share.batch.reserve(wall_contacts_.springs.size());
     share.near.dormant = neighbours_.dormant;
+    share.books = EnergyBooks(EnergyUnit(unit_));
   }
   way_since_choice_ = 0;
   half_gap_ = suitable_half_gap(fastest);
@@ -233,6 +236,7 @@ double Simulation::suitable_half_gap(double fastest_squared) const {
 }
 
 void Simulation::choose_near_pairs(Share& share, double half_gap) {
+  if (motion_.keeps_energy_ledger) share.books.finish(grains_, moving_walls_, motion_.time_step);
   NearPairs before = std::exchange(share.near, {});
   share.near.from = before.from;
   share.near.to = before.to;
@@ -245,6 +249,8 @@ void Simulation::evaluate(Share& share, std::size_t chunk, PhaseClock& clock, Ph
   std::size_t const from = share.near.from + chunk * NearPairs::rows_a_chunk,
                     to = std::min(from + NearPairs::rows_a_chunk, share.near.to);
   double const dt = motion_.time_step;
+  bool const keeps_books = motion_.keeps_energy_ledger;
+  if (keeps_books) share.books.book_pairs(share.near, chunk, grains_, laws_, period_, moving_walls_, dt);
   double const overlap = evaluate_pairs(share.near, chunk, grains_, laws_, period_, dt, unit_, share.actions.data());
   clock.add_to(times.pairs);
   auto const& near_walls = wall_contacts_.grain;
@@ -252,8 +258,11 @@ void Simulation::evaluate(Share& share, std::size_t chunk, PhaseClock& clock, Ph
     return static_cast<std::size_t>(std::ranges::lower_bound(near_walls, static_cast<std::int32_t>(row)) -
                                     near_walls.begin());
   };
-  double const wall_overlap =
-      evaluate_walls(wall_contacts_, share.batch, grains_, scene(), wall_laws_, dt, entry(from), entry(to));
+  std::size_t const first = entry(from), last = entry(to);
+  list_wall_contacts(wall_contacts_, share.batch, grains_, scene(), wall_laws_, first, last);
+  if (keeps_books)
+    share.books.book_walls(chunk, wall_contacts_, share.batch, grains_, scene(), wall_laws_[0], dt, first, last);
+  double const wall_overlap = act_on_walls(wall_contacts_, share.batch, grains_, scene(), wall_laws_, dt, first, last);
   share.watch.overlap = std::max({share.watch.overlap, overlap, wall_overlap});
   clock.add_to(times.walls);
 }
@@ -318,6 +327,7 @@ void Simulation::run_steps(std::int64_t count) {
         clock.add_to(times.neighbours);
       }
     }
+    if (motion_.keeps_energy_ledger) own.books.finish(grains_, moving_walls_, motion_.time_step);
 #pragma omp single
     {
       way_since_choice_ = way;
@@ -332,7 +342,8 @@ void Simulation::run_steps(std::int64_t count) {
     }
   }
   steps_ += count;
-  for (Share const& share : shares_) {
+  for (Share& share : shares_) {
+    booked_ += share.books.take();
     watch_.overlap = std::max(watch_.overlap, share.watch.overlap);
     watch_.step_squared = std::max(watch_.step_squared, share.watch.step_squared);
     watch_.broken = std::max(watch_.broken, share.watch.broken);
@@ -387,6 +398,8 @@ double Simulation::move(Share& own, std::size_t from, std::size_t to, ActionSlot
   double const x_low = std::isfinite(period_.x) ? 0.0 : -period_.x;
   Quad const gravity{rig_.gravity.x() * dt, rig_.gravity.y() * dt, rig_.gravity.z() * dt, 0};
   double const drag = 6 * std::numbers::pi * motion_.contact.gas_viscosity * dt;  // Stokes, of gas at rest
+  bool const books_drag = motion_.keeps_energy_ledger && drag > 0;
+  if (books_drag) own.books.before_move(grains_, from, to);
   double fastest = 0, broken = 0;
   for (std::size_t i = from; i < to; ++i) {
     GrainAction& action = slots.of(i);
@@ -419,6 +432,7 @@ double Simulation::move(Share& own, std::size_t from, std::size_t to, ActionSlot
     if (!(speed_squared < fastest_grain * fastest_grain)) broken = 1;  // NaN too
     if (entry >= 0) wall_contacts_.path[w] += std::sqrt(speed_squared) * dt;
   }
+  if (books_drag) own.books.after_move(grains_, from, to, drag / dt, dt);
   own.watch.step_squared = std::max(own.watch.step_squared, fastest * dt * dt);
   own.watch.broken = std::max(own.watch.broken, broken);
   return fastest;

@@ -10,6 +10,7 @@
 #include "core/powder_bed.hpp"
 #include "dem/contact_law.hpp"
 #include "dem/decomposition.hpp"
+#include "dem/energy_ledger.hpp"
 #include "dem/grains.hpp"
 #include "dem/mixture.hpp"
 #include "dem/moving_walls.hpp"
@@ -40,6 +41,7 @@ struct Motion {
   double density = 0;                   ///< [kg/m^3]
   double time_step = 0;                 ///< [s]
   bool grains_sleep = false;  ///< whether grains that lie still are left alone until something moves near them
+  bool keeps_energy_ledger = false;  ///< see Simulation::energy()
   Mixture mixture = {};
 
   /// Of a grain of this PowderBed::material [kg/m^3].
@@ -104,7 +106,10 @@ class Simulation {
   PhaseTimes const& phases() const { return phases_; }  ///< of this rank, since scatter
   std::int64_t sleeping() const;                        ///< Collective.
   double coordination() const;                          ///< mean number of touching grains of a grain. Collective.
+  /// \pre no ledger of energy is kept
   void set_gravity(Vec3 const& gravity) { rig_.gravity = gravity; }
+  /// What became of the energy since scatter. Collective. \pre Motion::keeps_energy_ledger; gravity along no period
+  EnergyLedger energy() const;
   /// Grains faster than `speed` [m/s]. Collective.
   std::int64_t count_faster_than(double speed) const;
 
@@ -135,6 +140,7 @@ class Simulation {
     std::vector<GrainAction> actions;  ///< by slot, see NearPairs
     std::vector<GrainAction> held;     ///< of the first rows, which must wait for earlier shares
     WallBatch batch;
+    EnergyBooks books;  ///< only where a ledger is kept
     Watch watch;
     double fastest_squared = 0;  ///< of the last step
   };
@@ -163,6 +169,14 @@ class Simulation {
   double fastest_ghost_squared() const;
   std::vector<std::int64_t> loads() const;  ///< of the owned grains, in pairs
   void append_all_springs(std::vector<LocalSpring>& springs) const;
+  void open_energy_ledger();
+  /// Changes the grains outside the steps, and gives the energy that is lost by it to an account. Collective.
+  template <class Change>
+  void give_to(HeldEnergy& account, Change const& change);
+  HeldEnergy held_energy() const;  ///< of all ranks, where the velocities lie. Collective.
+  HeldEnergy held_by_grains(Grains const& grains) const;
+  HeldEnergy held_by_pairs(Grains const& grains) const;
+  HeldEnergy held_at_walls(Grains const& grains, MovingWalls const& walls) const;
   std::int64_t look();
   void check_sleep();
   Watch shared_watch();
@@ -186,6 +200,9 @@ class Simulation {
   LawTable laws_;
   std::vector<ContactLaw> wall_laws_;  ///< by material; one: of all
   ActionUnit unit_;
+  EnergyUnit energy_unit_;
+  HeldEnergy held_at_start_, carried_out_, lost_to_sleep_;  ///< of all ranks
+  BookedWork booked_;                                       ///< of this rank
   Neighbours neighbours_;
   std::vector<Share> shares_;  ///< one a thread
   double half_gap_ = 0, way_since_choice_ = 0, ghosts_fastest_squared_ = 0, reach_ = 0,

@@ -69,20 +69,6 @@ WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t k
   return taken;
 }
 
-/// Velocity of a wall's surface where it touches, and spin of the wall about y.
-struct WallSurface {
-  double vx, vz, spin;
-};
-
-WallSurface surface_of(WallScene const& scene, std::size_t wall, Vec3 const& normal) {
-  WallPose const& pose = scene.moving.poses()[wall];
-  std::size_t const roller = wall - scene.walls.blocks.size();
-  if (roller >= scene.walls.rollers.size()) return {pose.vx, pose.vz, 0};
-  Roller const& r = scene.walls.rollers[roller];
-  double const speed = r.spin * r.radius;  // spin x normal, with spin along y
-  return {pose.vx + speed * normal.z(), pose.vz - speed * normal.x(), r.spin};
-}
-
 void append(WallBatch& b, GrainView const& g, double distance, Vec3 const& n, std::size_t wall, WallScene const& scene,
             double friction, WallSpring const& spring) {
   double const overlap = g.radius - distance, arm = g.radius - 0.5 * std::max(overlap, 0.0);
@@ -282,6 +268,15 @@ double take_over(WallContacts& c, std::size_t w, WallBatch& batch, WallScene con
 
 }  // namespace
 
+WallSurface surface_of(WallScene const& scene, std::size_t wall, Vec3 const& normal) {
+  WallPose const& pose = scene.moving.poses()[wall];
+  std::size_t const roller = wall - scene.walls.blocks.size();
+  if (roller >= scene.walls.rollers.size()) return {pose.vx, pose.vz, 0};
+  Roller const& r = scene.walls.rollers[roller];
+  double const speed = r.spin * r.radius;  // spin x normal, with spin along y
+  return {pose.vx + speed * normal.z(), pose.vz - speed * normal.x(), r.spin};
+}
+
 double distance_to(WallCandidate const& candidate, WallScene const& scene, Vec3 const& centre) {
   auto const wall = static_cast<std::size_t>(candidate.wall);
   Vec3 const p = in_frame_of(pose_of(candidate, scene), centre);
@@ -360,9 +355,9 @@ bool is_near_moving_wall(WallContacts const& c, std::size_t w, MovingWalls const
   });
 }
 
-double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, WallScene const& scene,
-                      std::vector<ContactLaw> const& laws, double dt, std::size_t from, std::size_t to) {
-  if (from == to) return 0;
+void list_wall_contacts(WallContacts& contacts, WallBatch& batch, Grains const& g, WallScene const& scene,
+                        std::vector<ContactLaw> const& laws, std::size_t from, std::size_t to) {
+  if (from == to) return;
   WallContacts& c = contacts;
   bool const many = laws.size() > 1;
   clear(batch);
@@ -387,7 +382,12 @@ double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g,
     c.spring_count[w] = static_cast<std::int32_t>(batch.key.size() - already);
     if (many) batch.law.resize(batch.key.size(), static_cast<std::int64_t>(material));
   }
-  if (many)
+}
+
+double act_on_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, WallScene const& scene,
+                    std::vector<ContactLaw> const& laws, double dt, std::size_t from, std::size_t to) {
+  if (from == to) return 0;
+  if (laws.size() > 1)
     act_on<true>(batch, laws.data(), scene.form, dt);
   else
     act_on<false>(batch, laws.data(), scene.form, dt);
@@ -395,10 +395,10 @@ double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& g,
   double worst = 0;
   std::size_t at = 0;
   for (std::size_t w = from; w < to; ++w) {
-    auto const row = static_cast<std::size_t>(c.grain[w]);
+    auto const row = static_cast<std::size_t>(contacts.grain[w]);
     if (is_asleep(g.quiet[row])) continue;
     double const diameter = 2 * g[row].radius;
-    worst = std::max(worst, take_over(c, w, batch, scene, diameter, at));
+    worst = std::max(worst, take_over(contacts, w, batch, scene, diameter, at));
   }
   return worst;
 }

@@ -80,11 +80,21 @@ void append_springs(WallContacts const& contacts, Grains const& grains, std::vec
 /// Is a wall that moves among the candidates of grain `w` of the list?
 bool is_near_moving_wall(WallContacts const& contacts, std::size_t w, MovingWalls const& moving);
 
-/// Contacts of the grains [from, to) of the list. No allocation once the batch has grown.
-/// \param laws  by material; one: of all grains
+/// Fills the batch with the contacts of the grains [from, to) of the list; sleeping ones have none. No allocation once
+/// the batch has grown. \param laws  by material; one: of all grains
+void list_wall_contacts(WallContacts& contacts, WallBatch& batch, Grains const& grains, WallScene const& scene,
+                        std::vector<ContactLaw> const& laws, std::size_t from, std::size_t to);
+
+/// What the listed contacts do to the grains [from, to) of the list.
 /// \return largest overlap over the grain's diameter
-double evaluate_walls(WallContacts& contacts, WallBatch& batch, Grains const& grains, WallScene const& scene,
-                      std::vector<ContactLaw> const& laws, double dt, std::size_t from, std::size_t to);
+double act_on_walls(WallContacts& contacts, WallBatch& batch, Grains const& grains, WallScene const& scene,
+                    std::vector<ContactLaw> const& laws, double dt, std::size_t from, std::size_t to);
+
+/// Velocity of a wall's surface where it touches [m/s], and spin of the wall about y [rad/s].
+struct WallSurface {
+  double vx, vz, spin;
+};
+WallSurface surface_of(WallScene const& scene, std::size_t wall, Vec3 const& normal);
 
 /// Distance of a grain's centre from a candidate, now [m].
 double distance_to(WallCandidate const& candidate, WallScene const& scene, Vec3 const& centre);

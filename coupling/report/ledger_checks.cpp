@@ -10,7 +10,7 @@ namespace layerloop::coupling {
 namespace {
 
 // The limits at which a run is stopped (coupling/ledger.hpp).
-constexpr double mass_limit = 1e-12, ray_limit = 1e-12, residual_limit = 1e-6, heat_limit = 1e-6;
+constexpr double mass_limit = 1e-12, ray_limit = 1e-12, residual_limit = 1e-6, heat_limit = 1e-6, motion_limit = 1e-3;
 
 LedgerCheck small_enough(std::string label, double error, double limit) {
   return {fmt::format("{} (limit {})", label, significant(limit, 1)), significant(error, 2),
@@ -65,10 +65,28 @@ LedgerTable heat_table(Ledger const& l) {
           {small_enough("relative error, worst layer", l.heat_energy_relative_error, heat_limit)}};
 }
 
+LedgerTable motion_table(Ledger const& l) {
+  auto const nanojoules = [](double joules) { return significant(1e9 * joules, 5) + " nJ"; };
+  return {"Energy of the moving grains",
+          {{"work of the blade", nanojoules(l.energy_wall_work), true},
+           {"gained in motion", nanojoules(l.energy_kinetic)},
+           {"gained in height", nanojoules(l.energy_potential)},
+           {"gained in contacts", nanojoules(l.energy_elastic)},
+           {"dissipated in impacts", nanojoules(l.energy_dissipated_normal)},
+           {"dissipated by friction", nanojoules(l.energy_dissipated_tangential)},
+           {"dissipated by rolling", nanojoules(l.energy_dissipated_rolling)},
+           {"dissipated in the gas", nanojoules(l.energy_dissipated_gas)},
+           {"of grains that fell asleep", nanojoules(l.energy_dissipated_sleep)},
+           {"of grains that were taken out", nanojoules(l.energy_carried_out)},
+           {"residual", nanojoules(l.energy_residual)}},
+          {small_enough("residual over work done", l.energy_relative_error_dem, motion_limit)}};
+}
+
 }  // namespace
 
 std::vector<LedgerTable> ledgers(Ledger const& ledger, bool laser) {
   std::vector<LedgerTable> tables{mass_table(ledger), particle_table(ledger)};
+  if (ledger.energy_work_done > 0) tables.push_back(motion_table(ledger));
   if (laser) tables.insert(tables.end(), {light_table(ledger), heat_table(ledger)});
   return tables;
 }

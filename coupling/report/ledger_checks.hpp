@@ -23,7 +23,8 @@ struct LedgerTable {
   std::vector<LedgerCheck> checks;
 };
 
-/// Mass, particles and, with a laser, light and heat: what went in, where it is, and whether it adds up.
+/// Mass, particles, energy of the grains where it was booked and, with a laser, light and heat: what went in, where it
+/// is, and whether it adds up.
 std::vector<LedgerTable> ledgers(Ledger const& ledger, bool laser);
 
 /// The checks of all tables.

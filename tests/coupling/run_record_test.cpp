@@ -138,6 +138,10 @@ TEST(Summary, holds_the_keys_that_scripts_rely_on) {
   for (char const* key :
        {"mass_fed", "particles_lost", "power_residual", "heat_energy_relative_error", "surface_height_correction"})
     EXPECT_TRUE(all.at("ledger").at(key).is_number()) << key;
+  EXPECT_FALSE(all["ledger"].contains("energy_wall_work")) << "it was not booked";
+  Case booked = run.checked;
+  booked.run.energy_ledger = true;
+  EXPECT_TRUE(summary(booked, run.record, run.extras)["ledger"].at("energy_relative_error_dem").is_number());
   EXPECT_EQ(all["seed"], 42);
   EXPECT_EQ(all["version"], "1.2.3");
   EXPECT_EQ(all["case"], run.checked.name);

@@ -100,5 +100,20 @@ TEST(Audit, ClosesOverWhatIsThereAndStopsOverWhatIsNot) {
   EXPECT_THROW(audit(not_a_number, checked), PhysicsError);
 }
 
+TEST(Audit, StopsOverEnergyOfGrainsThatIsMissing) {
+  Case checked;
+  checked.material.density = 8190;
+  BuildState build = balanced_build(checked.material.density);
+  dem::EnergyLedger energy{.wall_work = 1e-9, .residual = 1e-12, .work_done = 2e-9};
+  book_motion(build.record.ledger, energy);
+  book_motion(build.record.ledger, energy);
+  EXPECT_DOUBLE_EQ(build.record.ledger.energy_wall_work, 2e-9);
+  EXPECT_DOUBLE_EQ(build.record.ledger.energy_relative_error_dem, 5e-4);
+  EXPECT_NO_THROW(audit(build, checked));
+  energy.residual = 1e-11;
+  book_motion(build.record.ledger, energy);
+  EXPECT_THROW(audit(build, checked), PhysicsError);
+}
+
 }  // namespace
 }  // namespace layerloop::coupling
