@@ -99,7 +99,7 @@ class OpenElsewhere(unittest.TestCase):
         self.assertEqual(subprocess.run([PROGRAM, "read", self.bed]).returncode, 0)
 
     def test_other_versions_are_refused(self):
-        self.assertIn("format version 2", self.refusal(lambda file: file.attrs.modify("format_version", 2)))
+        self.assertIn("format version 3", self.refusal(lambda file: file.attrs.modify("format_version", 3)))
         self.assertIn("not a file of layerloop", self.refusal(lambda file: file.attrs.__delitem__("format_version")))
 
     def test_foreign_storage_is_refused(self):
