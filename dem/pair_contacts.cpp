@@ -7,19 +7,6 @@
 namespace layerloop::dem {
 namespace {
 
-void clear(NearPairs& near) {
-  near.first.clear();
-  near.second.clear();
-  near.touching.clear();
-  near.dormant.clear();
-  for (auto* values : {&near.spring_x, &near.spring_y, &near.spring_z, &near.turn_x, &near.turn_y, &near.turn_z})
-    values->clear();
-  near.chunk.assign(1, 0);
-  near.far_part.clear();
-  near.far_slots.clear();
-  for (auto* rows : {&near.slot_first, &near.slot_second, &near.far_rows}) rows->clear();
-}
-
 /// Room for all listed pairs: memory that is not touched costs nothing, arrays that grow hold twice what they need.
 void reserve(NearPairs& near, std::size_t pairs, bool has_turn) {
   std::size_t const most = pairs + 2 * lanes_at_once * ((near.to - near.from) / NearPairs::rows_a_chunk + 1);
@@ -233,10 +220,6 @@ ActOn kernel(LawForm const& form) {
   return kernel<Reach::beyond, many_laws>(form.rolling);
 }
 
-}  // namespace
-
-namespace {
-
 /// A pair on its way into the second part of a chunk.
 struct FarPair {
   std::size_t pair;
@@ -291,9 +274,12 @@ void give_slots(NearPairs& near, std::size_t owned) {
 
 }  // namespace
 
-void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& g, Period const& period, double gap,
-                 bool has_turn, NearPairs& old, std::vector<PairSpring> const& dormant) {
-  clear(near);
+NearPairs choose_near(NearPairs const& old, Neighbours& neighbours, Grains const& g, Period const& period, double gap,
+                      bool has_turn) {
+  NearPairs near;
+  near.from = old.from;
+  near.to = old.to;
+  near.chunk = {0};
   auto const far_away = static_cast<std::int32_t>(g.size());
   reserve(near, static_cast<std::size_t>(neighbours.begin[near.to] - neighbours.begin[near.from]), has_turn);
   std::vector<FarPair> far;
@@ -308,7 +294,7 @@ void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& g, Perio
         spring = spring_at(old, static_cast<std::size_t>(place));
         touching = true;
       } else if (place <= -2) {
-        spring = dormant[static_cast<std::size_t>(-2 - place)];
+        spring = old.dormant[static_cast<std::size_t>(-2 - place)];
         touching = true;
       }
       if (is_near(g, static_cast<std::size_t>(first), static_cast<std::size_t>(second), period, gap)) {
@@ -332,6 +318,7 @@ void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& g, Perio
     }
   }
   give_slots(near, g.owned);
+  return near;
 }
 
 namespace {

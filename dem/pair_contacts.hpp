@@ -45,10 +45,10 @@ struct NearPairs {
   std::size_t reach() const { return far_rows.empty() ? 0 : static_cast<std::size_t>(far_rows.back()) + 1; }
 };
 
-/// Chooses the near pairs of rows [from, to) anew. `old` holds the springs of those that were near, `dormant` those of
-/// the others. \param gap  surfaces closer than this are near [m]
-void choose_near(NearPairs& near, Neighbours& neighbours, Grains const& grains, Period const& period, double gap,
-                 bool has_turn, NearPairs& old, std::vector<PairSpring> const& dormant);
+/// The near pairs of the rows of `old`, chosen anew; their springs are those of `old`, near or dormant.
+/// \param gap  surfaces closer than this are near [m]
+NearPairs choose_near(NearPairs const& old, Neighbours& neighbours, Grains const& grains, Period const& period,
+                      double gap, bool has_turn);
 
 /// Puts the springs of all shares' pairs back among the dormant ones of the list.
 void make_dormant(Neighbours& neighbours, std::vector<NearPairs const*> const& shares);

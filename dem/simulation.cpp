@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -200,19 +201,14 @@ void Simulation::share_out(int shares) {
     auto const [first, last] = dem::share(neighbours_.size() + grains_.owned, part, shares);
     // a row costs about as much as a pair
     auto const cut = [&](std::size_t load) {
-      std::size_t low = 0, high = grains_.owned;
-      while (low < high) {
-        std::size_t const middle = (low + high) / 2;
-        if (static_cast<std::size_t>(neighbours_.begin[middle]) + middle < load)
-          low = middle + 1;
-        else
-          high = middle;
-      }
-      return low;
+      auto const rows = std::views::iota(std::size_t{0}, grains_.owned);
+      auto const is_before = [&](std::size_t row) {
+        return static_cast<std::size_t>(neighbours_.begin[row]) + row < load;
+      };
+      return static_cast<std::size_t>(std::ranges::partition_point(rows, is_before) - rows.begin());
     };
     share.near.from = part == 0 ? 0 : cut(first);
     share.near.to = part + 1 == shares ? grains_.owned : cut(last);
-    share.actions.assign(NearPairs::ring, {});
     share.batch.reserve(wall_contacts_.springs.size());
     share.near.dormant = neighbours_.dormant;
     share.books = EnergyBooks(EnergyUnit(unit_));
@@ -221,6 +217,7 @@ void Simulation::share_out(int shares) {
   half_gap_ = suitable_half_gap(fastest);
   for (Share& share : shares_) choose_near_pairs(share, half_gap_);
 }
+
 void Simulation::advance(std::int64_t steps) {
   std::int64_t const end = steps_ + steps;
   while (steps_ < end) {
@@ -237,11 +234,8 @@ double Simulation::suitable_half_gap(double fastest_squared) const {
 
 void Simulation::choose_near_pairs(Share& share, double half_gap) {
   if (motion_.keeps_energy_ledger) share.books.finish(grains_, moving_walls_, motion_.time_step);
-  NearPairs before = std::exchange(share.near, {});
-  share.near.from = before.from;
-  share.near.to = before.to;
-  choose_near(share.near, neighbours_, grains_, period_, 2 * half_gap + reach_,
-              laws_.form.rolling == RollingModel::epsd2, before, before.dormant);
+  share.near = choose_near(share.near, neighbours_, grains_, period_, 2 * half_gap + reach_,
+                           laws_.form.rolling == RollingModel::epsd2);
   share.actions.assign(share.near.slots(), {});
 }
 
