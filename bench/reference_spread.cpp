@@ -15,6 +15,7 @@
 #include "core/random.hpp"
 #include "core/rayleigh_time.hpp"
 #include "core/write_file.hpp"
+#include "dem/settled_bed_bench.hpp"
 #include "dem/simulation.hpp"
 
 namespace {
@@ -89,19 +90,6 @@ TriangleSurface blade_mesh() {
   return extrude(cut(line, 100 * um));
 }
 
-ContactSettings contact() {
-  ContactSettings c;
-  c.youngs_modulus = 0.2e9;
-  c.poisson_ratio = 0.3;
-  c.restitution = 0.7;
-  c.sliding_friction = c.wall_friction = 0.7;
-  c.rolling_friction = 0.15;
-  c.cohesion = Cohesion::sjkr2;
-  c.cohesion_energy_density = 9e4;
-  c.time_step_fraction = 0.149;
-  return c;
-}
-
 /// Random sequential addition, the largest first, every sphere wholly within the region.
 PowderBed cloud(std::uint64_t seed) {
   struct Size {
@@ -157,12 +145,12 @@ Rig rig(double blade_moved, double blade_speed) {
 }
 
 void run(std::filesystem::path const& out, std::uint64_t seed, std::string const& tag) {
-  double const density = 9187, fraction = contact().time_step_fraction;
-  Motion const motion{.between_grains = grain_law(contact()),
-                      .at_walls = wall_law(contact()),
-                      .contact = contact(),
+  double const density = 9187, fraction = thesis_contact().time_step_fraction;
+  Motion const motion{.between_grains = grain_law(thesis_contact()),
+                      .at_walls = wall_law(thesis_contact()),
+                      .contact = thesis_contact(),
                       .density = density,
-                      .time_step = fraction * rayleigh_time(6.5 * um, density, contact())};
+                      .time_step = fraction * rayleigh_time(6.5 * um, density, thesis_contact())};
   auto const steps = [&](double time) { return static_cast<std::int64_t>(time / motion.time_step); };
   auto const path = [&](std::string const& name) { return out / fmt::format("spread_{}_{}", tag, name); };
   Communicator const comm;

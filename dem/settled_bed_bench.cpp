@@ -10,18 +10,6 @@
 namespace layerloop::dem {
 namespace {
 
-ContactSettings thesis_contact() {
-  ContactSettings contact;
-  contact.youngs_modulus = 0.2e9;
-  contact.poisson_ratio = 0.3;
-  contact.restitution = 0.7;
-  contact.sliding_friction = contact.wall_friction = 0.7;
-  contact.rolling_friction = 0.15;
-  contact.cohesion = Cohesion::sjkr2;
-  contact.cohesion_energy_density = 9e4;
-  return contact;
-}
-
 Rig floor_under(BedFile const& file) {
   if (!file.floor_z) throw InputError("the bed has no floor (grains would fall) give floor_z in its first line");
   constexpr double far = 1;  // [m]
@@ -36,6 +24,19 @@ Rig floor_under(BedFile const& file) {
   return rig;
 }
 }  // namespace
+
+ContactSettings thesis_contact() {
+  ContactSettings contact;
+  contact.youngs_modulus = 0.2e9;
+  contact.poisson_ratio = 0.3;
+  contact.restitution = 0.7;
+  contact.sliding_friction = contact.wall_friction = 0.7;
+  contact.rolling_friction = 0.15;
+  contact.cohesion = Cohesion::sjkr2;
+  contact.cohesion_energy_density = 9e4;
+  contact.time_step_fraction = 0.149;
+  return contact;
+}
 
 SettledBedBench bench_settled_bed(BedFile file, std::int64_t steps, Communicator const& communicator) {
   ContactSettings const contact = thesis_contact();

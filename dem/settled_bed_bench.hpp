@@ -4,9 +4,14 @@
 #include <string>
 
 #include "core/bed_file.hpp"
+#include "core/case.hpp"
 #include "core/communicator.hpp"
 
 namespace layerloop::dem {
+
+/// The thesis' contact values (its Table 4 and section 3.2), for what runs without a case file; preset `thesis` has the
+/// same.
+ContactSettings thesis_contact();
 
 /// How fast a settled bed is computed; over all ranks.
 struct SettledBedBench {
