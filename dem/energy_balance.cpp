@@ -72,12 +72,12 @@ HeldEnergy Simulation::held_at_walls(Grains const& grains, MovingWalls const& wa
   WallBatch batch;
   WallScene const scene_then{rig_.walls, walls, rig_.width, laws_.form, wall_reach_};
   list_wall_contacts(contacts, batch, grains, scene_then, wall_laws_, 0, contacts.grain.size());
-  for (std::size_t c = 0; c < batch.overlap.size(); ++c) {
+  for (std::size_t c = 0; c < batch.size; ++c) {
     ContactLaw law = motion_.at_walls;
-    law.sliding_friction = batch.friction[c];
+    law.sliding_friction = batch.friction(c);
+    ContactState const s = batch.state(c);
     SpringEnergy const energy =
-        spring_energy(law, batch.overlap[c], batch.radius[c], {batch.spring_x[c], batch.spring_y[c], batch.spring_z[c]},
-                      {batch.turn_x[c], batch.turn_y[c], batch.turn_z[c]});
+        spring_energy(law, s.overlap, s.radius, {s.spring_x, s.spring_y, s.spring_z}, {s.turn_x, s.turn_y, s.turn_z});
     held.normal += energy_unit_.whole(energy.normal);
     held.tangential += energy_unit_.whole(energy.tangential);
     held.rolling += energy_unit_.whole(energy.rolling);

@@ -29,13 +29,6 @@ ContactState state_of(GrainState const& a, GrainState const& b, NearPairs const&
   return state;
 }
 
-ContactState state_of(WallBatch const& b, std::size_t c) {
-  return {b.overlap[c], b.radius[c], b.inverse_mass[c], b.nx[c],        b.ny[c],          b.nz[c],
-          b.vx[c],      b.vy[c],     b.vz[c],           b.sx[c],        b.sy[c],          b.sz[c],
-          b.wx[c],      b.wy[c],     b.wz[c],           b.spring_x[c],  b.spring_y[c],    b.spring_z[c],
-          b.turn_x[c],  b.turn_y[c], b.turn_z[c],       b.closeness[c], b.touches[c] != 0};
-}
-
 ContactAction action_of(ContactLaw const& law, ContactState const& state, RollingModel rolling, double dt) {
   return rolling == RollingModel::cdt ? act<Reach::touch, RollingModel::cdt>(law, state, dt)
                                       : act<Reach::touch, RollingModel::epsd2>(law, state, dt);
@@ -176,17 +169,17 @@ void EnergyBooks::book_walls(std::size_t chunk, WallContacts const& contacts, Wa
     std::int32_t const row = contacts.grain[w];
     if (is_asleep(grains.quiet[static_cast<std::size_t>(row)])) continue;
     for (std::int32_t k = 0; k < contacts.spring_count[w]; ++k, ++c) {
-      ContactState const state = state_of(batch, c);
+      ContactState const state = batch.state(c);
       if (state.overlap <= 0) continue;
       ContactLaw law_of_wall = law;
-      law_of_wall.sliding_friction = batch.friction[c];
+      law_of_wall.sliding_friction = batch.friction(c);
       Parts const parts = parts_of(law_of_wall, state, scene.form.rolling, dt);
-      auto const wall = static_cast<std::size_t>(batch.wall[c]);
+      auto const wall = static_cast<std::size_t>(batch.wall(c));
       Vec3 const normal(state.nx, state.ny, state.nz);
       WallSurface const surface = surface_of(scene, wall, normal);
       WallPose const& pose = scene.moving.poses()[wall];
-      kept_[chunk].push_back({row, -1, batch.wall[c], parts.force, parts.damping, parts.tangential, parts.turning,
-                              parts.rolling, batch.radius[c] - 0.5 * state.overlap, 0,
+      kept_[chunk].push_back({row, -1, batch.wall(c), parts.force, parts.damping, parts.tangential, parts.turning,
+                              parts.rolling, state.radius - 0.5 * state.overlap, 0,
                               Vec3(surface.vx - pose.vx, 0, surface.vz - pose.vz), surface.spin});
       book_half(kept_[chunk].back(), grains, scene.moving, dt);
     }

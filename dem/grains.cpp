@@ -25,7 +25,7 @@ void Grains::push_back(GrainRecord const& r) {
 }
 
 void Grains::close() {
-  state.push_back({1e30, 1e30, 1e30, 1e-6, 0, 0, 0, 1, 0, 0, 0, 1});
+  state.push_back({1e30, 1e30, 1e30, 1, 0, 0, 0, 1, 0, 0, 0, 1e-6});
   material.push_back(0);
   quiet.push_back(0);
 }
@@ -34,8 +34,9 @@ GrainRecord Grains::record(std::size_t i) const { return {state[i], id[i], mater
 
 GrainRecord record_of(PowderBed const& bed, std::size_t i, double density) {
   double const r = bed.radius[i], inverse_mass = 1 / (bed.volume(i) * density);
-  return {{bed.x[i], bed.y[i], bed.z[i], r, bed.vx[i], bed.vy[i], bed.vz[i], inverse_mass, bed.wx[i], bed.wy[i],
-           bed.wz[i], inverse_mass / (0.4 * r * r)},
+  double const inverse_inertia = inverse_mass / (0.4 * r * r);
+  return {{bed.x[i], bed.y[i], bed.z[i], inverse_inertia, bed.vx[i], bed.vy[i], bed.vz[i], inverse_mass, bed.wx[i],
+           bed.wy[i], bed.wz[i], r},
           bed.id[i],
           bed.material[i],
           0,

@@ -10,9 +10,9 @@ namespace layerloop::dem {
 /// What a contact needs to know of a grain, in three quads so that eight grains turn into vectors with few shuffles
 /// (dem/lanes.hpp).
 struct alignas(32) GrainState {
-  double x, y, z, radius;              ///< [m]
-  double vx, vy, vz, inverse_mass;     ///< [m/s], [1/kg]
-  double wx, wy, wz, inverse_inertia;  ///< [rad/s], [1/(kg m^2)]
+  double x, y, z, inverse_inertia;  ///< [m], [1/(kg m^2)]
+  double vx, vy, vz, inverse_mass;  ///< [m/s], [1/kg]
+  double wx, wy, wz, radius;        ///< [rad/s], [m]
 };
 
 /// A grain that has lain still at so many checks in a row falls asleep (dem/sleep.hpp).

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dem/lanes.hpp"
+#include "dem/law_lanes.hpp"
 
 namespace layerloop::dem {
 namespace {
@@ -50,7 +51,7 @@ bool is_near(Grains const& g, std::size_t i, std::size_t j, Period const& period
 
 /// A block of pairs while it is worked on.
 struct PairBlock {
-  GrainLanes first, second;
+  PairLanes grains;
   ForceLanes force;  // on the first grain; the second gets its opposite
   TorqueLanes on_first, on_second;
   Lanes<std::int64_t> law, touching;
@@ -70,30 +71,6 @@ void store(Lanes<std::int64_t>& to, std::size_t at, Numbers const& value, double
   *reinterpret_cast<Flags*>(&to[at]) = __builtin_convertvector(value * per_unit, Flags);
 }
 
-BasicContactLaw<Numbers> filled_law(ContactLaw const& law) {
-  auto const all = [](double value) { return filled<Numbers>(value); };
-  return {all(law.normal_stiffness), all(law.tangential_stiffness),
-          all(law.normal_damping),   all(law.tangential_damping),
-          all(law.sliding_friction), all(law.rolling_friction),
-          all(law.cohesion),         all(law.pull_off),
-          all(law.adhesion),         {all(law.bridge.force), all(law.bridge.steepness), all(law.bridge.rupture)},
-          all(law.charge),           all(law.adhesion_in_coulomb),
-          all(law.least_normal),     all(law.keeps_spring)};
-}
-
-/// The laws of eight pairs: as many numbers, in the same order, as in one law.
-BasicContactLaw<Numbers> gathered_law(ContactLaw const* laws, std::int64_t const* which) {
-  constexpr std::size_t numbers = sizeof(ContactLaw) / sizeof(double);
-  static_assert(sizeof(BasicContactLaw<Numbers>) == numbers * sizeof(Numbers));
-  BasicContactLaw<Numbers> gathered;
-  auto* to = reinterpret_cast<double*>(&gathered);
-  for (std::size_t l = 0; l < lanes_at_once; ++l) {
-    auto const* from = reinterpret_cast<double const*>(laws + which[l]);
-    for (std::size_t n = 0; n < numbers; ++n) to[n * lanes_at_once + l] = from[n];
-  }
-  return gathered;
-}
-
 Numbers difference(Lanes<double> const& a, Lanes<double> const& b, std::size_t l) {
   return eight(&a[l]) - eight(&b[l]);
 }
@@ -102,26 +79,27 @@ Numbers difference(Lanes<double> const& a, Lanes<double> const& b, std::size_t l
 /// them at a time when each is short. \return largest overlap over the smaller grain's radius
 template <Reach reach, bool many_laws>
 double press(PairBlock& pairs, std::size_t count, ContactLaw const* laws, Period const& period) {
-  GrainLanes const &a = pairs.first, &b = pairs.second;
+  PairLanes const& g = pairs.grains;
   BasicContactLaw<Numbers> law = filled_law(laws[0]);
   double const half_x = 0.5 * period.x, half_y = 0.5 * period.y;
   Numbers const none{};
   Numbers worst{};
   for (std::size_t l = 0; l < count; l += lanes_at_once) {
-    Numbers dx = difference(a.x, b.x, l), dy = difference(a.y, b.y, l);
-    Numbers const dz = difference(a.z, b.z, l), x_up = dx + period.x, x_down = dx - period.x, y_up = dy + period.y,
+    Numbers dx = eight(&g.dx[l]), dy = eight(&g.dy[l]);
+    Numbers const dz = eight(&g.dz[l]), x_up = dx + period.x, x_down = dx - period.x, y_up = dy + period.y,
                   y_down = dy - period.y;
     dx = dx > half_x ? x_down : dx;
     dx = dx < -half_x ? x_up : dx;
     dy = dy > half_y ? y_down : dy;
     dy = dy < -half_y ? y_up : dy;
     Numbers const squared = dx * dx + dy * dy + dz * dz, near = inverse_root(squared);
-    Numbers const ra = eight(&a.radius[l]), rb = eight(&b.radius[l]), sum = ra + rb, overlap = sum - squared * near;
+    Numbers const ra = eight(&g.first.radius[l]), rb = eight(&g.second.radius[l]), sum = ra + rb,
+                  overlap = sum - squared * near;
     Numbers const felt = overlap > 0.0 ? overlap : none;
     BasicContactState<Numbers> state;
     state.overlap = overlap;
     state.radius = ra * rb * inverse(sum);
-    state.inverse_mass = eight(&a.inverse_mass[l]) + eight(&b.inverse_mass[l]);
+    state.inverse_mass = eight(&g.inverse_mass[l]);
     if constexpr (reach == Reach::beyond) {
       Numbers const close = ra * rb * near;
       state.closeness = close * close;
@@ -149,7 +127,8 @@ double press(PairBlock& pairs, std::size_t count, ContactLaw const* laws, Period
 template <RollingModel rolling, bool many_laws>
 void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, double dt,
          ActionUnit const& unit) {
-  GrainLanes const &a = pairs.first, &b = pairs.second;
+  PairLanes const& g = pairs.grains;
+  SpinLanes const &a = g.first, &b = g.second;
   ForceLanes& f = pairs.force;
   TorqueLanes &p = pairs.on_first, &q = pairs.on_second;
   BasicContactLaw<Numbers> law = filled_law(laws[0]);
@@ -166,9 +145,9 @@ void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const
     force.viscous = eight(&pairs.viscous[l]);
     BasicContactState<Numbers> state;
     state.radius = eight(&pairs.radius[l]);
-    state.inverse_mass = eight(&a.inverse_mass[l]) + eight(&b.inverse_mass[l]);
+    state.inverse_mass = eight(&g.inverse_mass[l]);
     state.nx = eight(&pairs.nx[l]), state.ny = eight(&pairs.ny[l]), state.nz = eight(&pairs.nz[l]);
-    state.vx = difference(a.vx, b.vx, l), state.vy = difference(a.vy, b.vy, l), state.vz = difference(a.vz, b.vz, l);
+    state.vx = eight(&g.vx[l]), state.vy = eight(&g.vy[l]), state.vz = eight(&g.vz[l]);
     state.sx = surface(a.wx, b.wx), state.sy = surface(a.wy, b.wy), state.sz = surface(a.wz, b.wz);
     state.wx = difference(a.wx, b.wx, l), state.wy = difference(a.wy, b.wy, l), state.wz = difference(a.wz, b.wz, l);
     state.spring_x = eight(s.x + l), state.spring_y = eight(s.y + l), state.spring_z = eight(s.z + l);
@@ -395,10 +374,8 @@ double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::i
     std::size_t const count = std::min(block, end - at);
     fetch_rows(g, static_cast<std::size_t>(std::min(near.first[at], near.second[at])) + rows_ahead);
     std::int32_t const *first = near.first.data() + at, *second = near.second.data() + at;
-    for (std::size_t l = 0; l < count; l += lanes_at_once) {
-      load_lanes(g.state.data(), first + l, pairs.first, l);
-      load_lanes(g.state.data(), second + l, pairs.second, l);
-    }
+    for (std::size_t l = 0; l < count; l += lanes_at_once)
+      load_pairs(g.state.data(), first + l, second + l, pairs.grains, l);
     for (std::size_t l = 0; many && l < count; ++l)
       pairs.law[l] = g.material[static_cast<std::size_t>(first[l])] * laws.materials +
                      g.material[static_cast<std::size_t>(second[l])];
@@ -413,12 +390,10 @@ double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::i
     std::copy_n(pairs.touching.values, count, &near.touching[at]);
     constexpr auto mask = static_cast<std::int32_t>(NearPairs::ring) - 1;
     for (std::size_t l = 0; l < count; ++l) in_ring_first[l] = first[l] & mask, in_ring_second[l] = second[l] & mask;
-    for (std::size_t l = 0; l < count; l += lanes_at_once) {
-      add_lanes<Side::first>(pairs.force, pairs.on_first, l,
-                             slot_first ? slot_first + (at - begin) + l : in_ring_first + l, actions);
-      add_lanes<Side::second>(pairs.force, pairs.on_second, l,
-                              slot_second ? slot_second + (at - begin) + l : in_ring_second + l, actions);
-    }
+    std::int32_t const *to_first = slot_first ? slot_first + (at - begin) : in_ring_first,
+                       *to_second = slot_second ? slot_second + (at - begin) : in_ring_second;
+    for (std::size_t l = 0; l < count; l += lanes_at_once)
+      add_lanes(pairs.force, pairs.on_first, pairs.on_second, l, to_first + l, to_second + l, actions);
   }
   return worst;
 }

@@ -209,7 +209,6 @@ void Simulation::share_out(int shares) {
     };
     share.near.from = part == 0 ? 0 : cut(first);
     share.near.to = part + 1 == shares ? grains_.owned : cut(last);
-    share.batch.reserve(wall_contacts_.springs.size());
     share.near.dormant = neighbours_.dormant;
     share.books = EnergyBooks(EnergyUnit(unit_));
   }
@@ -388,9 +387,10 @@ Quad in_units(std::array<std::uint64_t, 4> const& whole, double unit) {
 }  // namespace
 
 double Simulation::move(Share& own, std::size_t from, std::size_t to, ActionSlots const& slots) {
-  double const dt = motion_.time_step;
-  double const x_low = std::isfinite(period_.x) ? 0.0 : -period_.x;
-  Quad const gravity{rig_.gravity.x() * dt, rig_.gravity.y() * dt, rig_.gravity.z() * dt, 0};
+  double const dt = motion_.time_step, far = std::numeric_limits<double>::infinity();
+  // the fourth of each quad is no component: radius, 1/m and 1/I stay what they are
+  Quad const step{dt, dt, dt, 0}, gravity{rig_.gravity.x() * dt, rig_.gravity.y() * dt, rig_.gravity.z() * dt, 0};
+  Quad const low{std::isfinite(period_.x) ? 0.0 : -far, 0, -far, -far}, high{period_.x, period_.y, far, far};
   double const drag = 6 * std::numbers::pi * motion_.contact.gas_viscosity * dt;  // Stokes, of gas at rest
   bool const books_drag = motion_.keeps_energy_ledger && drag > 0;
   if (books_drag) own.books.before_move(grains_, from, to);
@@ -407,20 +407,15 @@ double Simulation::move(Share& own, std::size_t from, std::size_t to, ActionSlot
       torque += reinterpret_cast<Quad const&>(wall_contacts_.torque[w]);
     }
     GrainState& g = grains_[i];
-    double const inverse_mass = g.inverse_mass, inverse_inertia = g.inverse_inertia;
-    Quad v = quad(g.vx) + (force * (dt * inverse_mass) + gravity);
-    if (drag > 0) v *= 1 / (1 + drag * g.radius * inverse_mass);
-    Quad const w_new = quad(g.wx) + torque * (dt * inverse_inertia);
-    Quad const r = quad(g.x) + v * dt;
-    double const radius = g.radius;
+    Quad v = quad(g.vx) + (force * (dt * g.inverse_mass) + gravity);
+    if (drag > 0) {
+      double const slower = 1 / (1 + drag * g.radius * g.inverse_mass);
+      v *= Quad{slower, slower, slower, 1};
+    }
+    quad(g.wx) += torque * (dt * g.inverse_inertia);
+    Quad const r = quad(g.x) + v * step, up = r + high, down = r - high;
+    quad(g.x) = r < low ? up : (r >= high ? down : r);
     quad(g.vx) = v;
-    quad(g.wx) = w_new;
-    quad(g.x) = r;
-    g.inverse_mass = inverse_mass;
-    g.inverse_inertia = inverse_inertia;
-    g.radius = radius;
-    g.x = r[0] < x_low ? r[0] + period_.x : (r[0] >= period_.x ? r[0] - period_.x : r[0]);
-    g.y = r[1] < 0 ? r[1] + period_.y : (r[1] >= period_.y ? r[1] - period_.y : r[1]);
     double const speed_squared = squared(v[0], v[1], v[2]);
     fastest = std::max(fastest, speed_squared);
     if (!(speed_squared < fastest_grain * fastest_grain)) broken = 1;  // NaN too

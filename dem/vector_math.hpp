@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -12,6 +13,7 @@ namespace layerloop::dem {
 /// Eight numbers at once, as the compiler's own vectors: the same source runs on any instruction set.
 using Numbers [[gnu::vector_size(64)]] = double;
 using Flags [[gnu::vector_size(64)]] = std::int64_t;
+inline constexpr std::size_t lanes_at_once = 8;
 
 inline double magnitude(double x) { return std::abs(x); }
 inline double inverse(double x) { return 1 / x; }

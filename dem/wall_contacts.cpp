@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "dem/law_lanes.hpp"
 
 namespace layerloop::dem {
 namespace {
@@ -70,91 +73,40 @@ WallSpring inherited(WallContacts const& contacts, std::size_t w, std::int64_t k
 }
 
 void append(WallBatch& b, GrainView const& g, double distance, Vec3 const& n, std::size_t wall, WallScene const& scene,
-            double friction, WallSpring const& spring) {
+            double friction, WallSpring const& spring, std::size_t material) {
+  if (b.size == b.octets.size() * lanes_at_once) b.octets.emplace_back();
+  WallOctet& octet = b.octets[b.size / lanes_at_once];
+  std::size_t const l = b.size++ % lanes_at_once;
+  BasicContactState<Numbers>& s = octet.state;
   double const overlap = g.radius - distance, arm = g.radius - 0.5 * std::max(overlap, 0.0);
   WallSurface const surface = surface_of(scene, wall, n);
-  b.overlap.push_back(overlap);
-  b.radius.push_back(g.radius);
-  b.inverse_mass.push_back(g.inverse_mass);
-  b.friction.push_back(scene.walls.friction(wall).value_or(friction));
-  b.nx.push_back(n.x());
-  b.ny.push_back(n.y());
-  b.nz.push_back(n.z());
-  b.vx.push_back(g.v.x() - surface.vx);
-  b.vy.push_back(g.v.y());
-  b.vz.push_back(g.v.z() - surface.vz);
-  b.sx.push_back(arm * g.w.x());
-  b.sy.push_back(arm * g.w.y());
-  b.sz.push_back(arm * g.w.z());
-  b.wx.push_back(g.w.x());
-  b.wy.push_back(g.w.y() - surface.spin);
-  b.wz.push_back(g.w.z());
-  b.spring_x.push_back(spring.x);
-  b.spring_y.push_back(spring.y);
-  b.spring_z.push_back(spring.z);
-  b.turn_x.push_back(spring.turn_x);
-  b.turn_y.push_back(spring.turn_y);
-  b.turn_z.push_back(spring.turn_z);
+  s.overlap[l] = overlap;
+  s.radius[l] = g.radius;
+  s.inverse_mass[l] = g.inverse_mass;
+  s.nx[l] = n.x(), s.ny[l] = n.y(), s.nz[l] = n.z();
+  s.vx[l] = g.v.x() - surface.vx, s.vy[l] = g.v.y(), s.vz[l] = g.v.z() - surface.vz;
+  s.sx[l] = arm * g.w.x(), s.sy[l] = arm * g.w.y(), s.sz[l] = arm * g.w.z();
+  s.wx[l] = g.w.x(), s.wy[l] = g.w.y() - surface.spin, s.wz[l] = g.w.z();
+  s.spring_x[l] = spring.x, s.spring_y[l] = spring.y, s.spring_z[l] = spring.z;
+  s.turn_x[l] = spring.turn_x, s.turn_y[l] = spring.turn_y, s.turn_z[l] = spring.turn_z;
   double const close = g.radius * g.radius / distance;  // the image of a charge in a plane lies as deep behind it
-  b.closeness.push_back(scene.form.reach == Reach::beyond ? close * close : 0.0);
-  b.touches.push_back(spring.is_old ? 1 : 0);
-  b.key.push_back(spring.key);
-  b.wall.push_back(static_cast<std::int32_t>(wall));
+  s.closeness[l] = scene.form.reach == Reach::beyond ? close * close : 0.0;
+  s.was_touching[l] = spring.is_old ? -1 : 0;
+  octet.friction[l] = scene.walls.friction(wall).value_or(friction);
+  octet.law[l] = static_cast<std::int64_t>(material);
+  octet.key[l] = spring.key;
+  octet.wall[l] = static_cast<std::int32_t>(wall);
 }
 
-void clear(WallBatch& b) {
-  for (auto* v : {&b.overlap,  &b.radius,   &b.inverse_mass, &b.friction, &b.nx,     &b.ny,     &b.nz,       &b.vx,
-                  &b.vy,       &b.vz,       &b.sx,           &b.sy,       &b.sz,     &b.wx,     &b.wy,       &b.wz,
-                  &b.spring_x, &b.spring_y, &b.spring_z,     &b.turn_x,   &b.turn_y, &b.turn_z, &b.closeness})
-    v->clear();
-  b.touches.clear();
-  b.law.clear();
-  b.key.clear();
-  b.wall.clear();
-}
-
-/// All contacts of the batch at once.
+/// Eight contacts at once; lanes without a contact compute what nobody reads.
 template <Reach reach, RollingModel rolling, bool many_laws>
 void act_on(WallBatch& b, ContactLaw const* laws, double dt) {
-  std::size_t const n = b.overlap.size();
-  for (auto* v : {&b.fx, &b.fy, &b.fz, &b.tx, &b.ty, &b.tz}) v->resize(n);
-  double const *overlap = b.overlap.data(), *radius = b.radius.data(), *inverse_mass = b.inverse_mass.data();
-  double const *friction = b.friction.data(), *nx = b.nx.data(), *ny = b.ny.data(), *nz = b.nz.data();
-  double const *vx = b.vx.data(), *vy = b.vy.data(), *vz = b.vz.data();
-  double const *sx = b.sx.data(), *sy = b.sy.data(), *sz = b.sz.data();
-  double const *wx = b.wx.data(), *wy = b.wy.data(), *wz = b.wz.data();
-  double *ux = b.spring_x.data(), *uy = b.spring_y.data(), *uz = b.spring_z.data();
-  double *ox = b.turn_x.data(), *oy = b.turn_y.data(), *oz = b.turn_z.data();
-  double const* closeness = b.closeness.data();
-  std::int64_t const* law_of = b.law.data();
-  std::int64_t* touches = b.touches.data();
-  double *fx = b.fx.data(), *fy = b.fy.data(), *fz = b.fz.data(), *tx = b.tx.data(), *ty = b.ty.data(),
-         *tz = b.tz.data();
-  ContactLaw const only = laws[0];
-#pragma omp simd
-  for (std::size_t c = 0; c < n; ++c) {
-    double const arm = radius[c] - 0.5 * (overlap[c] > 0.0 ? overlap[c] : 0.0);
-    ContactLaw law_of_wall = only;
-    if constexpr (many_laws) law_of_wall = laws[law_of[c]];
-    law_of_wall.sliding_friction = friction[c];
-    ContactAction const a = act<reach, rolling>(
-        law_of_wall, {overlap[c], radius[c], inverse_mass[c], nx[c], ny[c], nz[c],        vx[c],          vy[c],
-                      vz[c],      sx[c],     sy[c],           sz[c], wx[c], wy[c],        wz[c],          ux[c],
-                      uy[c],      uz[c],     ox[c],           oy[c], oz[c], closeness[c], touches[c] != 0},
-        dt);
-    ux[c] = a.spring_x;
-    uy[c] = a.spring_y;
-    uz[c] = a.spring_z;
-    ox[c] = a.turn_x;
-    oy[c] = a.turn_y;
-    oz[c] = a.turn_z;
-    touches[c] = a.touches ? 1 : 0;
-    fx[c] = a.fx;
-    fy[c] = a.fy;
-    fz[c] = a.fz;
-    tx[c] = -arm * a.qx - a.rx;
-    ty[c] = -arm * a.qy - a.ry;
-    tz[c] = -arm * a.qz - a.rz;
+  BasicContactLaw<Numbers> law = filled_law(laws[0]);
+  for (std::size_t c = 0; c < b.size; c += lanes_at_once) {
+    WallOctet& octet = b.octets[c / lanes_at_once];
+    if constexpr (many_laws) law = gathered_law(laws, octet.law);
+    law.sliding_friction = octet.friction;
+    octet.action = act<reach, rolling>(law, octet.state, dt);
   }
 }
 
@@ -201,7 +153,7 @@ void find_candidates(WallScene const& scene, MeshGrids const& grids, GrainView c
 /// Contacts of one grain with the triangles [from, to) of one mesh, merged. Triangles out of reach are put to sleep
 /// for as long as they cannot be reached.
 void touch_mesh(WallContacts& contacts, std::size_t w, WallBatch& batch, GrainView const& g, WallScene const& scene,
-                double friction, std::size_t from, std::size_t to) {
+                double friction, std::size_t material, std::size_t from, std::size_t to) {
   auto const wall = static_cast<std::size_t>(contacts.candidates[from].wall);
   WallPose const& pose = scene.moving.poses()[wall];
   TriangleSurface const& surface = scene.walls.surface(wall);
@@ -223,11 +175,11 @@ void touch_mesh(WallContacts& contacts, std::size_t w, WallBatch& batch, GrainVi
   std::int64_t const first = contacts.candidates[from].key - contacts.candidates[from].triangle();
   for (TriangleContact const& t : batch.touched)
     append(batch, g, t.distance, t.normal, wall, scene, friction,
-           inherited(contacts, w, first + t.triangle, batch.touched, surface));
+           inherited(contacts, w, first + t.triangle, batch.touched, surface), material);
 }
 
 void touch_primitive(WallContacts& contacts, std::size_t w, WallBatch& batch, GrainView const& g,
-                     WallScene const& scene, double friction, WallCandidate& candidate) {
+                     WallScene const& scene, double friction, std::size_t material, WallCandidate& candidate) {
   auto const wall = static_cast<std::size_t>(candidate.wall);
   WallPose const& pose = scene.moving.poses()[wall];
   double const path = contacts.path[w] + pose.path;
@@ -236,34 +188,37 @@ void touch_primitive(WallContacts& contacts, std::size_t w, WallBatch& batch, Gr
   double const gap = near.distance - g.radius - scene.reach_gap;
   if (gap < 0)
     append(batch, g, near.distance, {near.nx, near.ny, near.nz}, wall, scene, friction,
-           own_spring(contacts, w, candidate.key));
+           own_spring(contacts, w, candidate.key), material);
   else
     candidate.awake_at = path + gap * (1 - 1e-9);
 }
 
 /// Adds force and torque of the contacts of one grain, from `at` on in the batch, and keeps their springs.
-double take_over(WallContacts& c, std::size_t w, WallBatch& batch, WallScene const& scene, double diameter,
+double take_over(WallContacts& c, std::size_t w, WallBatch& batch, WallScene const& scene, double radius,
                  std::size_t& at) {
   double worst = 0;
-  c.force[w] = c.torque[w] = {};
-  std::int32_t const contacts = c.spring_count[w];
-  c.spring_count[w] = 0;
+  ForceQuad force{}, torque{};
+  WallSpring* kept = &c.springs[static_cast<std::size_t>(c.spring_begin[w])];
+  std::int32_t const contacts = std::exchange(c.spring_count[w], 0);
   for (std::int32_t s = 0; s < contacts; ++s, ++at) {
-    if (batch.touches[at]) {
-      c.springs[static_cast<std::size_t>(c.spring_begin[w] + c.spring_count[w]++)] = {
-          batch.key[at],    batch.spring_x[at], batch.spring_y[at], batch.spring_z[at],
-          batch.turn_x[at], batch.turn_y[at],   batch.turn_z[at]};
-    }
-    double const force[3] = {batch.fx[at], batch.fy[at], batch.fz[at]},
-                 torque[3] = {batch.tx[at], batch.ty[at], batch.tz[at]};
-    for (std::size_t d = 0; d < 3; ++d) c.force[w][d] += force[d], c.torque[w][d] += torque[d];
-    worst = std::max(worst, batch.overlap[at] / diameter);
-    auto const wall = static_cast<std::size_t>(batch.wall[at]);
+    WallOctet const& octet = batch.octet(at);
+    BasicContactAction<Numbers> const& a = octet.action;
+    std::size_t const l = at % lanes_at_once;
+    if (a.touches[l])
+      kept[c.spring_count[w]++] = {octet.key[l], a.spring_x[l], a.spring_y[l], a.spring_z[l],
+                                   a.turn_x[l],  a.turn_y[l],   a.turn_z[l]};
+    double const overlap = octet.state.overlap[l], arm = radius - 0.5 * std::max(overlap, 0.0);
+    force[0] += a.fx[l], force[1] += a.fy[l], force[2] += a.fz[l];
+    torque[0] -= arm * a.qx[l] + a.rx[l], torque[1] -= arm * a.qy[l] + a.ry[l], torque[2] -= arm * a.qz[l] + a.rz[l];
+    worst = std::max(worst, overlap);
+    auto const wall = static_cast<std::size_t>(octet.wall[l]);
     if (!scene.moving.moves(wall)) continue;
-    batch.force[wall][0] -= std::llround(batch.fx[at] / wall_force_unit);
-    batch.force[wall][1] -= std::llround(batch.fz[at] / wall_force_unit);
+    batch.force[wall][0] -= std::llround(a.fx[l] / wall_force_unit);
+    batch.force[wall][1] -= std::llround(a.fz[l] / wall_force_unit);
   }
-  return worst;
+  c.force[w] = force;
+  c.torque[w] = torque;
+  return worst / (2 * radius);
 }
 
 }  // namespace
@@ -291,16 +246,32 @@ MeshGrids grids_of(Walls const& walls, double cell) {
   return grids;
 }
 
-void WallBatch::reserve(std::size_t contacts) {
-  for (auto* v : {&overlap, &radius, &inverse_mass, &friction, &nx, &ny, &nz,       &vx,       &vy,       &vz,
-                  &sx,      &sy,     &sz,           &wx,       &wy, &wz, &spring_x, &spring_y, &spring_z, &turn_x,
-                  &turn_y,  &turn_z, &closeness,    &fx,       &fy, &fz, &tx,       &ty,       &tz})
-    v->reserve(contacts);
-  key.reserve(contacts);
-  wall.reserve(contacts);
-  law.reserve(contacts);
-  touches.reserve(contacts);
-  touched.reserve(256);
+ContactState WallBatch::state(std::size_t contact) const {
+  BasicContactState<Numbers> const& s = octet(contact).state;
+  std::size_t const l = contact % lanes_at_once;
+  return {s.overlap[l],
+          s.radius[l],
+          s.inverse_mass[l],
+          s.nx[l],
+          s.ny[l],
+          s.nz[l],
+          s.vx[l],
+          s.vy[l],
+          s.vz[l],
+          s.sx[l],
+          s.sy[l],
+          s.sz[l],
+          s.wx[l],
+          s.wy[l],
+          s.wz[l],
+          s.spring_x[l],
+          s.spring_y[l],
+          s.spring_z[l],
+          s.turn_x[l],
+          s.turn_y[l],
+          s.turn_z[l],
+          s.closeness[l],
+          s.was_touching[l] != 0};
 }
 
 void build_wall_contacts(WallContacts& contacts, Grains const& g, WallScene const& scene, MeshGrids const& grids,
@@ -360,27 +331,26 @@ void list_wall_contacts(WallContacts& contacts, WallBatch& batch, Grains const& 
   if (from == to) return;
   WallContacts& c = contacts;
   bool const many = laws.size() > 1;
-  clear(batch);
+  batch.size = 0;
   for (std::size_t w = from; w < to; ++w) {
     auto const row = static_cast<std::size_t>(c.grain[w]);
     if (is_asleep(g.quiet[row])) continue;
     GrainView const grain = view_of(g, row);
     auto const material = many ? static_cast<std::size_t>(g.material[row]) : 0;
     double const friction = laws[material].sliding_friction;
-    auto const already = batch.key.size();
+    auto const already = batch.size;
     auto const end = static_cast<std::size_t>(c.begin[w + 1]);
     for (auto k = static_cast<std::size_t>(c.begin[w]); k < end;) {
       if (!is_triangle(c.candidates[k].key)) {
-        touch_primitive(c, w, batch, grain, scene, friction, c.candidates[k++]);
+        touch_primitive(c, w, batch, grain, scene, friction, material, c.candidates[k++]);
         continue;
       }
       std::size_t last = k;
       while (last < end && c.candidates[last].wall == c.candidates[k].wall) ++last;
-      touch_mesh(c, w, batch, grain, scene, friction, k, last);
+      touch_mesh(c, w, batch, grain, scene, friction, material, k, last);
       k = last;
     }
-    c.spring_count[w] = static_cast<std::int32_t>(batch.key.size() - already);
-    if (many) batch.law.resize(batch.key.size(), static_cast<std::int64_t>(material));
+    c.spring_count[w] = static_cast<std::int32_t>(batch.size - already);
   }
 }
 
@@ -397,8 +367,7 @@ double act_on_walls(WallContacts& contacts, WallBatch& batch, Grains const& g, W
   for (std::size_t w = from; w < to; ++w) {
     auto const row = static_cast<std::size_t>(contacts.grain[w]);
     if (is_asleep(g.quiet[row])) continue;
-    double const diameter = 2 * g[row].radius;
-    worst = std::max(worst, take_over(contacts, w, batch, scene, diameter, at));
+    worst = std::max(worst, take_over(contacts, w, batch, scene, g[row].radius, at));
   }
   return worst;
 }

@@ -44,19 +44,28 @@ struct WallContacts {
   std::vector<ForceQuad> force, torque;  ///< per grain of `grain`
 };
 
-/// Contacts of one thread's grains in one step, as arrays. Room for all candidates.
+/// Eight contacts with walls: their state as vectors, and what they do.
+struct WallOctet {
+  BasicContactState<Numbers> state;
+  Numbers friction;
+  BasicContactAction<Numbers> action;
+  std::int64_t law[lanes_at_once];  ///< by material; only where there are several
+  std::int64_t key[lanes_at_once];
+  std::int32_t wall[lanes_at_once];
+};
+
+/// Contacts of one thread's grains in one step.
 struct WallBatch {
-  std::vector<double> overlap, radius, inverse_mass, friction, nx, ny, nz, vx, vy, vz, sx, sy, sz, wx, wy, wz, spring_x,
-      spring_y, spring_z, turn_x, turn_y, turn_z, closeness;
-  std::vector<double> fx, fy, fz, tx, ty, tz;
-  std::vector<std::int64_t> key;
-  std::vector<std::int32_t> wall;
-  std::vector<std::int64_t> law;         ///< by material; only where there are several
-  std::vector<std::int64_t> touches;     ///< before, then after the step
+  std::vector<WallOctet> octets;  ///< grow, so that a step soon allocates nothing
+  std::size_t size = 0;
   std::vector<TriangleContact> touched;  ///< scratch of one grain
   WallForces force;                      ///< on walls that move, until they are taken over
 
-  void reserve(std::size_t contacts);
+  WallOctet const& octet(std::size_t contact) const { return octets[contact / lanes_at_once]; }
+  double friction(std::size_t contact) const { return octet(contact).friction[contact % lanes_at_once]; }
+  std::int32_t wall(std::size_t contact) const { return octet(contact).wall[contact % lanes_at_once]; }
+  /// Before the step until act_on_walls, its spring and touch after it from then on.
+  ContactState state(std::size_t contact) const;
 };
 
 /// Walls as the contacts see them.
