@@ -15,8 +15,8 @@ namespace layerloop::raytrace {
 namespace {
 
 constexpr int max_crossings = 10000;
-/// Largest over mean radius up to which the grid is the faster one: bench/README.md, section rays.
-constexpr double grid_size_ratio = 4;
+/// Spheres in a cell up to which the grid is faster than Embree: bench/README.md, section rays.
+constexpr double max_crowding = 100;
 
 /// Corners of an upright box around everything.
 struct Box {
@@ -83,16 +83,6 @@ void check_in_tile(PowderBed const& bed, std::array<double, 2> const& period) {
   }
 }
 
-Backend faster_backend(PowderBed const& bed) {
-  if (bed.size() == 0) return Backend::embree;
-  double mean = 0, largest = 0;
-  for (double const radius : bed.radius) {
-    mean += radius / static_cast<double>(bed.size());
-    largest = std::max(largest, radius);
-  }
-  return largest <= grid_size_ratio * mean ? Backend::grid : Backend::embree;
-}
-
 }  // namespace
 
 struct BedScene::Data {
@@ -146,9 +136,10 @@ BedScene::BedScene(PowderBed const& bed, TriangleSurface const& substrate, std::
   data.middle = 0.5 * (data.box.lower + data.box.upper);
   data.add_spheres(bed);
 
-  if (backend == Backend::automatic) backend = faster_backend(bed);
-  bool const in_grid = backend == Backend::grid && bed.size() > 0;
-  if (in_grid) data.grid.emplace(data.spheres, std::array{-data.middle.x(), -data.middle.y()}, period);
+  if (backend != Backend::embree && bed.size() > 0)
+    data.grid.emplace(data.spheres, std::array{-data.middle.x(), -data.middle.y()}, period);
+  if (backend == Backend::automatic && data.grid && data.grid->crowding() > max_crowding) data.grid.reset();
+  bool const in_grid = data.grid.has_value();
   if (in_grid && substrate.triangles.empty()) return;
   data.embree_box = in_grid ? mesh : data.box;
   data.embree_box.shift(-data.middle);

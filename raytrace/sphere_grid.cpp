@@ -7,7 +7,7 @@ namespace {
 
 constexpr int max_crossings = 10000;
 /// Edge of a cell over the mean diameter: bench/README.md, section rays.
-constexpr double cell_over_diameter = 0.8;
+constexpr double cell_over_diameter = 1.8;
 /// Thin powder in a large box would otherwise have more empty cells than grains.
 constexpr double max_cells_per_sphere = 16;
 /// By how much of a cell a sphere is taken larger when it is sorted in: covers the rounding of a walk.
@@ -43,7 +43,8 @@ void SphereGrid::choose_cells(std::span<Sphere const> spheres, std::array<double
     bool const periodic = a < 2 && period[a] > 0;
     double const size = periodic ? period[a] : upper[a] - lower[a];
     auto const count = static_cast<std::int32_t>(std::max(size / edge, 1.0));
-    Axis& axis = axis_[a] = {periodic ? tile[a] : lower[a], size / count, periodic ? size : 0.0, count, 0, count};
+    Axis& axis =
+        axis_[a] = {periodic ? tile[a] : lower[a], size / count, count / size, periodic ? size : 0.0, count, 0, count};
     if (!periodic) continue;
     axis.tile_begin = static_cast<std::int32_t>(std::ceil(std::max(tile[a] - lower[a], 0.0) / axis.edge));
     axis.tile_end = axis.tile_begin + count;
@@ -98,12 +99,16 @@ SphereGrid::SphereGrid(std::span<Sphere const> spheres, std::array<double, 2> ti
   for (Sphere const& s : spheres) visit_cells(s, [&](std::size_t cell) { ++filled[cell]; });
   first_pack_.resize(cells + 1);
   std::uint32_t packs = 0;
+  double copies = 0, squares = 0;
   for (std::size_t c = 0; c < cells; ++c) {
+    copies += filled[c];
+    squares += static_cast<double>(filled[c]) * filled[c];
     first_pack_[c] = packs;
     packs += (filled[c] + lanes_at_once - 1) / lanes_at_once;
     filled[c] = 0;
   }
   first_pack_[cells] = packs;
+  crowding_ = squares / copies;
 
   Pack nobody{};
   nobody.x = infinity + Numbers{};  // its distance is never a number
@@ -126,7 +131,7 @@ SphereGrid::SphereGrid(std::span<Sphere const> spheres, std::array<double, 2> ti
 template <bool around>
 SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
   std::array<double*, 3> const origin{&ray.ox, &ray.oy, &ray.oz};
-  std::array const direction{ray.dx, ray.dy, ray.dz};
+  std::array const direction{ray.dx, ray.dy, ray.dz}, inverse{1 / ray.dx, 1 / ray.dy, 1 / ray.dz};
   double enter = 0, leave = limit;
   for (std::size_t a = 0; a < 3; ++a) {
     Axis const& axis = axis_[a];
@@ -136,7 +141,7 @@ SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
       if (from > 0 || to < 0) return {};
       continue;
     }
-    double const one = from / direction[a], other = to / direction[a];
+    double const one = from * inverse[a], other = to * inverse[a];
     enter = std::max(enter, std::min(one, other));
     leave = std::min(leave, std::max(one, other));
   }
@@ -146,21 +151,19 @@ SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
   std::array<double, 3> exit, between;
   for (std::size_t a = 0; a < 3; ++a) {
     Axis const& axis = axis_[a];
-    bool const tiled = around && axis.period > 0;
+    bool const tiled = around && axis.period > 0, up = direction[a] > 0;
     std::int32_t const begin = tiled ? axis.tile_begin : 0, stop = tiled ? axis.tile_end : axis.cells;
-    double at = *origin[a] + enter * direction[a] - axis.lower;
-    if (tiled) {
-      double const shift = axis.period * std::floor((at - begin * axis.edge) / axis.period);
-      *origin[a] -= shift;
-      at -= shift;
+    double at = (*origin[a] + enter * direction[a] - axis.lower) * axis.inverse_edge;  // in cells
+    if (tiled && !(at >= begin && at < stop)) {
+      double const periods = std::floor((at - begin) / (stop - begin));
+      *origin[a] -= periods * axis.period;
+      at -= periods * (stop - begin);
     }
-    bool const up = direction[a] > 0;
-    cell[a] = std::clamp(static_cast<std::int32_t>(at / axis.edge), begin, stop - 1);
+    cell[a] = std::clamp(static_cast<std::int32_t>(at), begin, stop - 1);
     step[a] = up ? 1 : -1;
     end[a] = up ? stop : begin - 1;
-    double const inverse = 1 / direction[a];
-    exit[a] = direction[a] == 0 ? infinity : (axis.lower + (cell[a] + up) * axis.edge - *origin[a]) * inverse;
-    between[a] = axis.edge * std::abs(inverse);
+    exit[a] = direction[a] == 0 ? infinity : (axis.lower + (cell[a] + up) * axis.edge - *origin[a]) * inverse[a];
+    between[a] = axis.edge * std::abs(inverse[a]);
   }
 
   Numbers nearest = infinity + Numbers{};

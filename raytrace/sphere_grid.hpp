@@ -35,6 +35,9 @@ class SphereGrid {
   /// The spheres and copies as they stand, up to the distance `limit`.
   SphereHit first_hit_in_tile(LocalRay const& ray, double limit) const;
 
+  /// How many spheres share the cell of a copy, on average over the copies: what a ray must look at where the powder
+  /// is.
+  double crowding() const { return crowding_; }
   std::size_t bytes() const;
 
  private:
@@ -44,8 +47,10 @@ class SphereGrid {
   /// Cells along one axis. On a periodic axis those of the tile have cells beside them, which hold the parts of copies
   /// that stick out: only pictures show them.
   struct Axis {
-    double lower, edge, period = 0;            ///< of the first cell [m]; 0: open
-    std::int32_t cells, tile_begin, tile_end;  ///< in all, and the range of the tile
+    double lower = 0;                                      ///< of the first cell [m]
+    double edge = 0, inverse_edge = 0;                     ///< of a cell [m], [1/m]
+    double period = 0;                                     ///< [m]; 0: open
+    std::int32_t cells = 0, tile_begin = 0, tile_end = 0;  ///< in all, and the range of the tile
   };
 
   void choose_cells(std::span<Sphere const> spheres, std::array<double, 2> tile, std::array<double, 2> period);
@@ -57,6 +62,7 @@ class SphereGrid {
   std::array<Axis, 3> axis_;
   std::vector<std::uint32_t> first_pack_;  ///< by cell, and the end
   std::vector<Pack, HugePages<Pack>> packs_;
+  double crowding_ = 0;
   std::vector<std::int32_t> sphere_;  ///< by lane of the packs; -1: empty
 };
 

@@ -157,9 +157,11 @@ TEST(Backends, PicturesShowTheCopiesThatStickOut) {
   EXPECT_GT(outside, 200);
 }
 
-TEST(Backends, SimilarGrainsGoToTheGrid) {
+TEST(Backends, TheGridServesUnlessItsCellsAreCrowded) {
   EXPECT_EQ(BedScene(powder(), plate(), {length, width}).backend(), Backend::grid);
-  EXPECT_EQ(BedScene(with_radii({4e-5, 1e-6}, 2000), {}, {length, width}).backend(), Backend::embree);
+  PowderBed scattered = powder();
+  add_grain(scattered, 1, 1, 1, 10e-6);  // a metre away: all others share a cell
+  EXPECT_EQ(BedScene(scattered, {}).backend(), Backend::embree);
   EXPECT_EQ(BedScene({}, plate()).backend(), Backend::embree);
 }
 
