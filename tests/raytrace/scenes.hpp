@@ -9,7 +9,6 @@
 #include "core/statistics.hpp"
 #include "core/triangle_surface.hpp"
 #include "raytrace/absorption.hpp"
-#include "raytrace/absorption.hpp"
 #include "raytrace/trace.hpp"
 
 namespace layerloop::raytrace {
