@@ -137,7 +137,7 @@ double ledger_error(Absorption const& result, AbsorptionSettings const& settings
     sum.add(rest);
     for (double const part : parts) sum.add(part);
     double const error = std::abs(sum.value() - total);
-    worst = error <= worst ? worst : error;  // also when it is not a number
+    if (std::isnan(error) || error > worst) worst = error;
   };
   for (SetAbsorption const& set : result.sets) {
     compare(1, std::array{set.absorptivity, set.escaped, set.residual}, 0);

@@ -26,7 +26,7 @@ struct TallyLayout {
   std::size_t size() const { return depth(depth_bins); }
 };
 
-/// Where absorbed power is sorted by place. Rows of grains are always asked for where `grains` is.
+/// By which places absorbed power is sorted.
 struct Places {
   bool grains = false;
   VoxelGrid const* grid = nullptr;  ///< cells, or none
