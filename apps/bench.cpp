@@ -44,6 +44,7 @@ void bench_dem(BenchOptions const& options) {
 
 void bench_rays(BenchOptions const& options) {
   using raytrace::BenchLight;
+  omp_set_num_threads(1);
   raytrace::RayBench const r = raytrace::bench_rays(read_bed(options.packing), options.rays,
                                                     options.uniform ? BenchLight::uniform : BenchLight::spot);
   nlohmann::ordered_json const json{

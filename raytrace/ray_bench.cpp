@@ -1,7 +1,6 @@
 #include "raytrace/ray_bench.hpp"
 
 #include <embree3/rtcore.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <ctime>
@@ -224,7 +223,6 @@ void find_time_to_standard_error(BedScene const& scene, RayBench& result) {
 
 RayBench bench_rays(BedFile const& file, std::int64_t rays, BenchLight light) {
   if (file.bed.size() == 0) throw InputError("the bed is empty (nothing to trace): give one with grains");
-  omp_set_num_threads(1);
   PowderBed bed = file.bed;
   std::fill(bed.material.begin(), bed.material.end(), 0);
   std::array const period{file.periodic_x.value_or(0), file.periodic_y.value_or(0)};
