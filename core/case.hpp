@@ -126,6 +126,7 @@ struct OpticsSettings {
   std::optional<std::array<double, 2>> refractive_index;  ///< [n, k], replaces the material's
   std::int64_t rays = 0;                                  ///< per beam position
   double position_spacing = 0;                            ///< between the beam positions that are traced [m]
+  bool retrace = true;  ///< at every position on the surface that has melted by then
 };
 
 struct ScanSettings {
