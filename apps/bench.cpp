@@ -51,6 +51,7 @@ void bench_rays(BenchOptions const& options) {
       {"particles", r.particles},
       {"paths", r.paths},
       {"secondary_rays", r.secondary_rays},
+      {"hit_share", r.hit_share},
       {"light", options.uniform ? "uniform" : "spot"},
       {"backend", r.grid_chosen ? "grid" : "embree"},
       {"rays_per_second", r.tracer.median},

@@ -246,6 +246,8 @@ RayBench bench_rays(BedFile const& file, std::int64_t rays, BenchLight light) {
   result.particles = static_cast<std::int64_t>(bed.size());
   result.paths = settings.rays;
   result.secondary_rays = static_cast<std::int64_t>(flights.secondary.size());
+  if (flights.secondary.empty())
+    throw InputError("no ray met a grain (nothing to time): is the bed where the light is?");
   compare_hits(*grid, *embree, flights.first, result);
   compare_hits(*grid, *embree, flights.secondary, result);
 
@@ -262,15 +264,14 @@ RayBench bench_rays(BedFile const& file, std::int64_t rays, BenchLight light) {
       for (RTCRayHit const& ray : prepared) {
         RTCRayHit copy = ray;
         built_in->intersect(copy);
-        found += copy.hit.geomID != RTC_INVALID_GEOMETRY_ID;
       }
     }));
     embree_seconds.push_back(timed([&] { answer(*embree); }));
     grid_seconds.push_back(timed([&] { answer(*grid); }));
     tracer_seconds.push_back(timed([&] { trace(chosen, beam, std::array{stainless_steel}, 0, cells, settings); }));
   }
-  if (found == 0) throw PhysicsError("no ray met a grain (the bed is not where the light is): check its coordinates");
   std::size_t const secondary = flights.secondary.size();
+  result.hit_share = static_cast<double>(found) / static_cast<double>(2 * rounds * secondary);
   result.built_in = rate(built_in_seconds, secondary);
   result.embree = rate(embree_seconds, secondary);
   result.grid = rate(grid_seconds, secondary);

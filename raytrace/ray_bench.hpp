@@ -20,6 +20,7 @@ struct Rate {
 struct RayBench {
   std::int64_t particles = 0, paths = 0;
   std::int64_t secondary_rays = 0;  ///< all flights after the first of each path, in path order
+  double hit_share = 0;             ///< of these that meet a grain again
   Rate built_in;  ///< raw rtcIntersect1 on Embree's own spheres (single precision, back faces filtered), secondary rays
   Rate embree;    ///< BedScene on Embree, secondary rays
   Rate grid;      ///< BedScene on the grid, secondary rays

@@ -23,13 +23,21 @@ TEST(RayBench, EveryContenderAnswersAndHitsAgree) {
     EXPECT_GT(rate.median, 1e4);  // a machine a hundred times slower than any
     EXPECT_GE(rate.best, rate.median);
   }
+  EXPECT_GT(result.hit_share, 0.3);
+  EXPECT_LT(result.hit_share, 1);
   EXPECT_EQ(result.hits_differing_plainly, 0);
   EXPECT_LE(result.reached_standard_error, result.target_standard_error);
   EXPECT_GT(result.reached_absorptivity, 0.35);  // more than flat steel
   EXPECT_LT(result.reached_absorptivity, 0.9);
 }
 
-TEST(RayBench, RefusesAnEmptyBed) { EXPECT_THROW(bench_rays({}, 1000, BenchLight::uniform), InputError); }
+TEST(RayBench, RefusesABedThatReflectsNothing) {
+  EXPECT_THROW(bench_rays({}, 1000, BenchLight::uniform), InputError);
+  BedFile file;
+  add_grain(file.bed, 0, 0, 0, 1e-6);
+  add_grain(file.bed, 1e-2, 1e-2, 0, 1e-6);
+  EXPECT_THROW(bench_rays(file, 1000, BenchLight::spot), InputError) << "the spot lies between them";
+}
 
 }  // namespace
 }  // namespace layerloop::raytrace
