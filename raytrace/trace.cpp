@@ -54,7 +54,7 @@ void check_result(AbsorbedPower const& power, Beam const& beam, BedScene const& 
 }  // namespace
 
 AbsorbedPower trace(BedScene const& scene, Beam const& beam, OpticalSet const& optics, std::int32_t substrate_material,
-                    VoxelGrid const& grid, TraceSettings const& settings) {
+                    VoxelGrid const& grid, TraceSettings const& settings, Communicator const* ranks) {
   if (settings.rays < 1 || settings.replicates < 2) {
     throw InputError(fmt::format(
         "{} rays in {} replicates cannot be traced (the standard error needs 2 replicates): raise optics.rays",
@@ -74,7 +74,7 @@ AbsorbedPower trace(BedScene const& scene, Beam const& beam, OpticalSet const& o
                            .places = {.grid = &grid}};
   check_problem(problem);
   RayTally tally({1, optics.surface.size(), 0}, problem.places, 0, settings.replicates);
-  trace_rays(problem, (settings.rays + settings.replicates - 1) / settings.replicates, tally);
+  trace_rays(problem, (settings.rays + settings.replicates - 1) / settings.replicates, tally, ranks);
   AbsorbedPower power = watts_of(tally, beam.power);
   check_result(power, beam, scene);
   return power;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/absorbed_power.hpp"
+#include "core/communicator.hpp"
 #include "core/voxel_grid.hpp"
 #include "raytrace/beam.hpp"
 #include "raytrace/bed_scene.hpp"
@@ -26,11 +27,12 @@ struct TraceSettings {
 /// Geometrical-optics trace of a beam for the layer loop. Watts go to the cell half a cell (on a grain at most half its
 /// radius) below the point that was hit, with y and x wrapped in periodic scenes; incident = absorbed + escaped +
 /// residual holds to 1e-12 before anything is rescaled. The standard error comes from the scatter of the replicates,
-/// each an independently shifted low-discrepancy set of rays. The same to the bit for any number of threads. \param
-/// substrate_material  of every triangle \throws InputError    settings or materials that cannot be traced \throws
-/// PhysicsError  nothing was absorbed, or the ledger does not close
+/// each an independently shifted low-discrepancy set of rays. The same to the bit for any number of threads and ranks.
+/// \param ranks  share the rays where given; collective then \param substrate_material  of every triangle \throws
+/// InputError    settings or materials that cannot be traced \throws PhysicsError  nothing was absorbed, or the ledger
+/// does not close
 AbsorbedPower trace(BedScene const& scene, Beam const& beam, OpticalSet const& optics, std::int32_t substrate_material,
-                    VoxelGrid const& grid, TraceSettings const& settings);
+                    VoxelGrid const& grid, TraceSettings const& settings, Communicator const* ranks = nullptr);
 
 /// The same with bare, smooth metals. \param refractive_index  n + ik by material
 AbsorbedPower trace(BedScene const& scene, Beam const& beam, std::span<std::complex<double> const> refractive_index,
