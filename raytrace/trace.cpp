@@ -130,8 +130,7 @@ std::vector<Tally> trace_blocks(Setting const& setting, Beam const& beam, std::i
     auto const u = uniform4(settings.seed, RandomStream::ray_shift, settings.id, static_cast<std::uint32_t>(replicate));
     Tally& tally = tallies[static_cast<std::size_t>(block)];
     for (std::int64_t index = begin; index < std::min(begin + block_rays, replicate_rays); ++index) {
-      std::array<double, 2> const start = ray_start(beam, index, {u[0], u[1]});
-      follow<Light>(setting, {{start[0], start[1], height}, -Vec3::UnitZ()}, watts, tally);
+      follow<Light>(setting, beam_ray(beam, height, index, {u[0], u[1]}), watts, tally);
     }
   }
   return tallies;
@@ -190,14 +189,7 @@ void check_input(BedScene const& scene, Beam const& beam, Setting const& setting
         "{} rays in {} replicates cannot be traced (the standard error needs 2 replicates): raise optics.rays",
         settings.rays, settings.replicates));
   }
-  bool const gaussian = beam.profile == BeamProfile::gaussian;
-  bool const sized = gaussian ? beam.radius > 0 : beam.size_x > 0 && beam.size_y > 0;
-  if (!(beam.power > 0 && sized && beam.centre.allFinite())) {
-    fail(fmt::format(
-        "a beam of {:g} W and radius {:g} m at x = {:g} m, y = {:g} m cannot be traced (power and size must be "
-        "positive): check [laser] and [scan]",
-        beam.power, beam.radius, beam.centre.x(), beam.centre.y()));
-  }
+  check_beam(beam);
   std::int32_t highest = setting.substrate_material, lowest = setting.substrate_material;
   for (std::int32_t row = 0; row < scene.grains(); ++row) {
     highest = std::max(highest, scene.material(row));
