@@ -194,18 +194,55 @@ std::vector<CaseKey> laser_rows() {
   constexpr auto scan = &Case::scan;
   return {
       {"laser", "power", at<laser, &L::power>, D::power, {1, 5000}, Need::with_laser, "", "Power of the beam."},
-      {"laser", "wavelength", at<laser, &L::wavelength>, D::length, {2e-7, 1.2e-5}, Need::with_laser, "",
-       "Wavelength of the beam; the refractive index must belong to it."},
-      {"laser", "spot_diameter", at<laser, &L::spot_diameter>, D::length, {1e-6, 2e-3}, Need::with_laser, "",
-       "Diameter of the Gaussian beam on the bed, measured by `spot_definition`."},
+      {"laser", "wavelength", at<laser, &L::wavelength>, D::length, {2e-7, 1.2e-5}, Need::with_light, "",
+       "Wavelength of the beam; it picks the refractive index from the material's optical constants."},
+      {"laser", "spot_diameter", at<laser, &L::spot_diameter>, D::length, {1e-6, 2e-3}, Need::with_spot, "",
+       "Diameter of the beam at its focus, measured by `spot_definition`; of a ring that of its crest; without a meaning for `profile` \"file\", whose table has its own lengths."},
       {"laser", "spot_definition", choice<laser, &L::spot_definition>({"1/e2", "D4sigma", "FWHM"}),
-       D::none, {}, Need::with_laser, "",
-       "Level at which `spot_diameter` is measured (1/e2 = D4sigma = 1.70 FWHM for a Gaussian)."},
+       D::none, {}, Need::with_spot, "",
+       "Level at which `spot_diameter` (and `ring_width`) is measured: 1/e2 = D4sigma = 1.70 FWHM for a Gaussian, all the same for a top hat."},
+      {"laser", "profile", choice<laser, &L::profile>({"gaussian", "top_hat", "ring", "file"}), D::none, {}, Need::never, "\"gaussian\"",
+       "Intensity across the beam; `ring`: Gaussian across its crest; `file`: over the radius as in `profile_file`."},
+      {"laser", "profile_file", at<laser, &L::profile_file>, D::none, {}, Need::never, "\"\"",
+       "CSV file `r [um],intensity [W/m2]` of a round beam on the bed, ascending; its power is scaled to that of the beam."},
+      {"laser", "ring_width", at<laser, &L::ring_width>, D::length, {0, 2e-3}, Need::never, "0",
+       "Full width of a ring across its crest, by `spot_definition`."},
+      {"laser", "ellipticity", at<laser, &L::ellipticity>, D::none, {0.05, 20}, Need::never, "1",
+       "Extent of the beam along y over that along x, at the same area."},
+      {"laser", "focus_offset", at<laser, &L::focus_offset>, D::length, {-0.1, 0.1}, Need::never, "0",
+       "Height of the focus above the layer: the beam is wider on the bed and its rays lean apart (or together, below 0); needs `rayleigh_length`."},
+      {"laser", "rayleigh_length", at<laser, &L::rayleigh_length>, D::length, {1e-6, 1}, Need::never, "",
+       "Distance from the focus at which the beam is wider by the square root of 2."},
+      {"laser", "incidence_angle", at<laser, &L::incidence_angle>, D::angle, {0, 85 * std::numbers::pi / 180}, Need::never, "0",
+       "Angle between the beam and straight down; the beam's axis meets the level of the layer where it would without."},
+      {"laser", "incidence_azimuth", at<laser, &L::incidence_azimuth>,
+       D::angle, {-2 * std::numbers::pi, 2 * std::numbers::pi}, Need::never, "0",
+       "Direction in which an oblique beam travels, seen from above, from x towards y."},
+      {"laser", "polarisation", choice<laser, &L::polarisation>({"unpolarised", "s", "p", "x", "y", "circular"}),
+       D::none, {}, Need::never, "\"unpolarised\"",
+       "Field of the light that arrives: across (`s`) or in (`p`) the plane of incidence on a level bed, along x or y; anything but unpolarised is followed from hit to hit."},
       {"laser", "absorptivity", at<laser, &L::absorptivity>, D::none, {0, 1, open}, Need::never, "",
        "Share of the power that is absorbed; given, it replaces the ray tracer."},
 
       {"optics", "refractive_index", at<optics, &O::refractive_index>, D::none, {0, 100}, Need::never, "",
        "[n, k] of the metal at the laser's wavelength; replaces the material's."},
+      {"optics", "grey_reflectance", at<optics, &O::grey_reflectance>, D::none, {0, 1}, Need::never, "",
+       "Share that every hit reflects, whatever the angle; replaces all refractive indices."},
+      {"optics", "floor", at<optics, &O::floor>, D::none, {}, Need::never, "\"\"",
+       "What lies below the powder: a material, \"black\" (absorbs all), \"none\" (light goes through, verb absorb only); empty: the powder's material."},
+      {"optics", "uniform_beam", at<optics, &O::uniform_beam>, D::none, {}, Need::never, "false",
+       "Whether the verb absorb lights the whole bed evenly instead of the spot."},
+      {"optics", "oxide_thickness", at<optics, &O::oxide_thickness>, D::length, {0, 5e-6}, Need::never, "0",
+       "Thickness of an oxide film on all metal; see the effect surface_oxide."},
+      {"optics", "oxide_index", at<optics, &O::oxide_index>, D::none, {0, 100}, Need::never, "",
+       "[n, k] of that film; by default that of Al2O3 on aluminium, TiO2 on titanium, Fe2O3 on iron, and their alloys."},
+      {"optics", "diffuse_share", at<optics, &O::diffuse_share>, D::none, {0, 1}, Need::never, "0",
+       "Share of the reflected light that a rough surface scatters by Lambert's law; see the effect diffuse_scattering."},
+      {"optics", "temperature", at<optics, &O::temperature>, D::temperature, {250, 4000}, Need::never, "\"300 K\"",
+       "Temperature of the metal that reflects; see the effect optical_temperature."},
+      {"optics", "polarisation_model", choice<optics, &O::polarisation_model>({"averaged", "tracked"}),
+       D::none, {}, Need::never, "\"averaged\"",
+       "Whether unpolarised light counts as unpolarised afresh at every hit (within 0.002 on powder), or its fields are followed."},
       {"optics", "rays", at<optics, &O::rays>, D::none, {100, 1e9}, Need::never, "20000",
        "Rays traced for each beam position."},
       {"optics", "position_spacing", at<optics, &O::position_spacing>,
@@ -322,6 +359,25 @@ std::vector<CaseKey> calibrate_rows() {
   };
 }
 
+std::vector<CaseKey> absorb_rows() {
+  using A = AbsorbSettings;
+  constexpr auto absorb = &Case::absorb;
+  return {
+      {"absorb", "bed", choice<absorb, &A::bed>({"spread", "settled", "file"}), D::none, {}, Need::never, "\"spread\"",
+       "Bed of the verb absorb: the last of run.layers that the recoater spreads, powder.particles grains that settle on a level plate, or the file of --bed."},
+      {"absorb", "plate_length", at<absorb, &A::plate_length>, D::length, {5e-5, 0.02}, Need::never, "\"300 um\"",
+       "Period, along x and y, of the plate on which grains settle."},
+      {"absorb", "target_standard_error", at<absorb, &A::target_standard_error>, D::none, {0, 0.5}, Need::never, "0.001",
+       "Standard error of the absorptivity at which no more rays are traced; 0: optics.rays rays."},
+      {"absorb", "max_rays", at<absorb, &A::max_rays>, D::none, {100, 1e12}, Need::never, "1e8",
+       "Rays after which a trace ends even so."},
+      {"absorb", "depth_bins", at<absorb, &A::depth_bins>, D::none, {1, 10000}, Need::never, "50",
+       "Slices of the depth profile, from the top of the bed to its floor."},
+      {"absorb", "map_spacing", at<absorb, &A::map_spacing>, D::length, {1e-7, 1e-3}, Need::never, "\"5 um\"",
+       "Pixels of the map of absorbed light."},
+  };
+}
+
 std::vector<CaseKey> material_rows() {
   using M = Material;
   constexpr auto m = &Case::material;
@@ -346,8 +402,10 @@ std::vector<CaseKey> material_rows() {
        "Molar mass of the vapour."},
       {"material", "emissivity", at<m, &M::emissivity>, D::none, {0, 1}, Need::with_laser, "",
        "Total emissivity of the surface."},
-      {"material", "refractive_index", at<m, &M::refractive_index>, D::none, {0, 100}, Need::with_laser, "",
-       "[n, k] at the laser's wavelength."},
+      {"material", "refractive_index", at<m, &M::refractive_index>, D::none, {0, 100}, Need::never, "",
+       "[n, k] at the laser's wavelength; replaces `optical_data`."},
+      {"material", "optical_data", at<m, &M::optical_data>, D::none, {}, Need::never, "",
+       "Set of optical constants, for example \"Cu (Johnson 1972)\"; an alloy borrows those of an element."},
       {"material", "source", at<m, &M::source>, D::none, {}, Need::always, "", "Where the values come from."},
   };
 }
@@ -373,6 +431,14 @@ std::vector<Effect> const& effects() {
   static std::vector<Effect> const rows = {
       {"latent_heat", "true", 2, "Latent heat of fusion between solidus and liquidus."},
       {"variable_conductivity", "true", 1, "Conductivity over temperature; off: its value at the solidus."},
+      {"surface_oxide", "true", 100,
+       "Oxide film of optics.oxide_thickness on all metal, as interfering layers (Born & Wolf 1.6.4); the strength "
+       "scales its thickness."},
+      {"diffuse_scattering", "true", 1,
+       "Share optics.diffuse_share of the reflected light is scattered by Lambert's law; the strength scales it."},
+      {"optical_temperature", "true", 10,
+       "Refractive index at optics.temperature: the damping of the conduction electrons grows with the resistivity, "
+       "that follows from material.conductivity by Wiedemann and Franz; the strength scales the change from 300 K."},
       {"evaporation", "false", 10, "Heat carried off by metal vapour (Hertz-Knudsen)."},
       {"surface_losses", "false", 100, "Radiation and convection from metal that faces gas."},
       {"cohesion", "true", 10, "Cohesion of [contact]; the strength scales its energy (thesis eq. 6, JKR, DMT)."},
@@ -381,23 +447,46 @@ std::vector<Effect> const& effects() {
       {"wall_friction", "true", 10,
        "Friction at walls of its own, contact.wall_friction; strength 0: walls rub as grains do."},
       {"wall_cohesion", "true", 10, "Cohesion between grains and walls; the strength scales its energy."},
-      {"capillary_bridge", "false", 10,
-       "Liquid bridges between grains that have touched (Willett et al., Langmuir 16 (2000) 9396); the strength scales their volume.",
-       {{"liquid_volume", D::none, {1e-9, 0.05}, "1e-5", "Volume of a bridge over the cube of twice the reduced radius."},
+      {"capillary_bridge",
+       "false",
+       10,
+       "Liquid bridges between grains that have touched (Willett et al., Langmuir 16 (2000) 9396); the strength scales "
+       "their volume.",
+       {{"liquid_volume",
+         D::none,
+         {1e-9, 0.05},
+         "1e-5",
+         "Volume of a bridge over the cube of twice the reduced radius."},
         {"surface_tension", D::surface_energy, {0.01, 2}, "\"0.072 N/m\"", "Surface tension of the liquid."},
         {"contact_angle", D::angle, {0, 1.5}, "\"0 deg\"", "Contact angle of the liquid on the metal."}}},
-      {"electrostatic_charge", "false", 10,
-       "Like charge on all grains: they repel one another and are held by their images in walls (method of images; the air breaks down at 2.65e-5 C/m2).",
+      {"electrostatic_charge",
+       "false",
+       10,
+       "Like charge on all grains: they repel one another and are held by their images in walls (method of images; the "
+       "air breaks down at 2.65e-5 C/m2).",
        {{"charge_density", D::charge_density, {0, 2.65e-5}, "\"2.65e-6 C/m2\"", "Charge on the surface of a grain."}}},
-      {"gas_drag", "false", 10, "Stokes drag of gas at rest on every grain; felt by grains below about 8 um.",
-       {{"viscosity", D::viscosity, {1e-6, 1e-3}, "\"2.2e-5 Pa s\"", "Viscosity of the gas (argon at 300 K: 2.2e-5 Pa s)."}}},
-      {"blade_vibration", "false", 10,
-       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. Manuf. 2021, 102248).",
+      {"gas_drag",
+       "false",
+       10,
+       "Stokes drag of gas at rest on every grain; felt by grains below about 8 um.",
+       {{"viscosity",
+         D::viscosity,
+         {1e-6, 1e-3},
+         "\"2.2e-5 Pa s\"",
+         "Viscosity of the gas (argon at 300 K: 2.2e-5 Pa s)."}}},
+      {"blade_vibration",
+       "false",
+       10,
+       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. "
+       "Manuf. 2021, 102248).",
        {{"amplitude", D::length, {0, 1e-4}, "\"2 um\"", "Amplitude of the recoater's vibration."},
         {"frequency", D::frequency, {1, 1e5}, "\"500 Hz\"", "Frequency of the recoater's vibration."}}},
       {"blade_compliance", "false", 100,
-       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides the stiffness (Penny et al., arXiv 2209.04320)."},
-      {"fines", "false", 10,
+       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides "
+       "the stiffness (Penny et al., arXiv 2209.04320)."},
+      {"fines",
+       "false",
+       10,
        "Grains finer than the size distribution, mixed in by mass (sieving and laser sizing cut them off).",
        {{"mass_fraction", D::none, {0, 0.5}, "0.02", "Share of the powder's mass that is fines."},
         {"diameter", D::length, {1e-6, 5e-5}, "\"8 um\"", "Diameter of the fines."}}},
@@ -431,7 +520,7 @@ std::vector<CaseKey> const& case_schema() {
   static std::vector<CaseKey> const schema = [] {
     std::vector<CaseKey> rows;
     for (auto const part : {powder_rows, rows_of_names, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows,
-                            effect_rows, material_rows}) {
+                            absorb_rows, effect_rows, material_rows}) {
       for (CaseKey& row : part()) rows.push_back(std::move(row));
     }
     return rows;
@@ -447,6 +536,10 @@ bool is_needed(CaseKey const& row, Case const& c) {
       return true;
     case Need::with_laser:
       return c.has_laser();
+    case Need::with_light:
+      return c.has_light();
+    case Need::with_spot:
+      return c.has_spot() && c.laser.profile != SpotProfile::file;
     case Need::with_part:
       return c.has_part();
     case Need::with_energy_density:
