@@ -6,7 +6,9 @@
 
 #include "core/powder_bed.hpp"
 #include "core/random.hpp"
+#include "core/statistics.hpp"
 #include "core/triangle_surface.hpp"
+#include "raytrace/absorption.hpp"
 #include "raytrace/trace.hpp"
 
 namespace layerloop::raytrace {
@@ -94,6 +96,12 @@ inline Beam uniform_light(std::array<double, 2> const& period) {
 inline VoxelGrid one_cell(BedScene const& scene) {
   double const edge = 2 * (scene.upper() - scene.lower()).norm();
   return {0.5 * (scene.lower() + scene.upper()) - Vec3::Constant(0.5 * edge), edge, {1, 1, 1}};
+}
+
+/// One material for everything.
+inline OpticalSet bare(std::complex<double> metal) { return {"", {{.refractive_index = metal}}, 0}; }
+inline OpticalSet grey(double absorptivity) {
+  return {"", {{.refractive_index = 1, .grey_reflectance = 1 - absorptivity}}, 0};
 }
 
 inline AbsorbedPower trace_uniform(BedScene const& scene, std::complex<double> metal, std::int64_t rays) {
