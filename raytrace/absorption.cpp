@@ -14,7 +14,8 @@ namespace {
 
 /// Pixels over the tile where the scene is periodic, over everything in it where it is open.
 AreaMap map_frame(BedScene const& scene, double spacing) {
-  AreaMap map{.spacing = spacing};
+  AreaMap map;
+  map.spacing = spacing;
   if (spacing == 0) return map;
   std::array<double, 2> from, extent;
   for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -39,10 +39,11 @@ Reflectance fresnel_reflectance(Complex refractive_index, double cosine) {
   double const c = std::clamp(cosine, grazing, 1.0);
   double const sine2 = 1 - c * c;
 
-  // q = a + ib = sqrt(N^2 - sin^2)
+  // q = a + ib = sqrt(N^2 - sin^2); the larger part first, the other from ab = nk, which does not cancel
   double const real = (n - 1) * (n + 1) - k * k + c * c;
   double const modulus = std::sqrt(real * real + 4 * n * n * k * k);  // a^2 + b^2
-  double const a = std::sqrt(std::max(0.5 * (modulus + real), 0.0));
+  double const larger = std::sqrt(0.5 * (modulus + std::abs(real)));
+  double const a = real >= 0 ? larger : n * k / larger;
 
   double const s = std::max(modulus - 2 * a * c + c * c, 0.0) / (modulus + 2 * a * c + c * c);
   double const even = modulus * c * c + sine2 * sine2, odd = 2 * a * c * sine2;

@@ -30,7 +30,7 @@ struct TallyLayout {
 struct Places {
   bool grains = false;
   VoxelGrid const* grid = nullptr;  ///< cells, or none
-  AreaMap map;                      ///< pixels seen from above (values unused); nx = 0: none
+  AreaMap map{};                    ///< pixels seen from above (values unused); nx = 0: none
   double bottom = 0, top = 0;       ///< of the depth profile [m]; what lies beyond counts in its first or last layer
 
   bool any() const { return grains || grid || map.nx > 0; }

@@ -35,6 +35,7 @@ Held count_held(BedScene const& scene, Beam const& beam, std::complex<double> me
     }
   }
   held.pixels = pixels_held / pixels;
+  std::printf("HELD %d pixels %.4f\n", held.total, held.pixels);
   return held;
 }
 

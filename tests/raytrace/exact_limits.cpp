@@ -16,22 +16,23 @@ TEST(ExactLimits, AGrooveOfAnyAngleUnfolds) {
   // Light that falls straight into a V of half angle a meets its walls while (2i - 1) a < 180 degrees, at an angle of
   // incidence of |90 - (2i - 1) a|, always with the same s and p.
   std::array const steel{bare(stainless_steel)};
-  for (double const degrees : {12.0, 20.0, 25.0, 30.0, 40.0, 45.0, 70.0}) {
+  for (double const degrees : {14.0, 20.0, 25.0, 30.0, 40.0, 45.0, 70.0}) {
     double const a = degrees * pi / 180, top = 1 / std::tan(a);
     TriangleSurface groove;
     groove.vertices = {{-1, -1, top}, {0, -1, 0}, {1, -1, top}, {-1, 2, top}, {0, 2, 0}, {1, 2, top}};
     groove.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
     BedScene const scene({}, groove, {0, 1});
-    double s = 1, p = 1, averaged = 1;
+    double s = 1, p = 1, averaged = 1, lit = 1;
     for (int i = 1; (2 * i - 1) * a < pi; ++i) {
       Reflectance const r = fresnel_reflectance(stainless_steel, std::abs(std::sin((2 * i - 1) * a)));
       s *= r.s, p *= r.p, averaged *= r.average();
+      lit = std::min(lit, std::sin((2 * i - 1) * a) / std::sin(a));  // so that every hit lies below the edges
     }
     auto const absorptivity = [&](BeamPolarisation light, Polarisation followed) {
       Beam const beam{.centre = {0, 0.5, 0},
                       .power = 1,
                       .profile = BeamProfile::uniform,
-                      .size_x = 1.9,
+                      .size_x = 1.9 * lit,
                       .size_y = 1,
                       .polarisation = light};
       return absorb(scene, beam, steel, 0, {.rays = 1000, .polarisation = followed}).sets[0].absorptivity;
@@ -84,8 +85,8 @@ TriangleSurface cavity(double rim, int rings, int around) {
   }
   for (int i = 0; i < rings; ++i) {
     for (int j = 0; j < around; ++j) {
-      if (i > 0) wall.triangles.push_back({corner(i, j), corner(i, j + 1), corner(i + 1, j)});
-      wall.triangles.push_back({corner(i, j + 1), corner(i + 1, j + 1), corner(i + 1, j)});
+      if (i > 0) wall.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
+      wall.triangles.push_back({corner(i, j + 1), corner(i + 1, j), corner(i + 1, j + 1)});
     }
   }
   return wall;
@@ -189,13 +190,15 @@ TEST(ExactLimits, ADiluteHalfSpaceIsChandrasekhars) {
   // A grey specular sphere scatters isotropically: A = sqrt(a) H(1) as the packing goes to zero.
   std::array const a{.10, .36, .60}, known{.5851, .8252, .9166};
   std::array const sets{grey(a[0]), grey(a[1]), grey(a[2])};
-  std::vector<Sample> const found = over_beds(.005, 40, 12, sets);
+  int const beds = 8;
+  std::vector<Sample> const found = over_beds(.001, 40, beds, sets);
   for (std::size_t k = 0; k < a.size(); ++k) {
     double const exact = std::sqrt(a[k]) * h_function_at_one(1 - a[k]);
     EXPECT_NEAR(exact, known[k], 6e-5);
-    double const error = found[k].sd / std::sqrt(12.0);
+    double const error = found[k].sd / std::sqrt(double{beds});
     EXPECT_NEAR(found[k].mean, exact, 3 * error) << a[k];
     EXPECT_LT(error, 4e-3);
+    std::printf("DIL %.2f %.4f %.4f exact %.4f\n", a[k], found[k].mean, error, exact);
   }
 }
 

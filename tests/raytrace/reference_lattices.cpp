@@ -10,12 +10,12 @@ namespace {
 constexpr double target = 3e-4;
 
 /// n + ik near 1 um, as in the hexagonal layers of Boley et al., Appl. Opt. 54 (2015) 2477.
-std::array const metals{bare({3.27, 4.48}), bare({3.45, 4.00}), bare({1.244, 10.0}), bare({0.35, 6.97}),
+std::array const metals{bare({0.35, 6.97}), bare({3.27, 4.48}), bare({3.45, 4.00}), bare({1.244, 10.0}),
                         bare({0.23, 7.09})};
 
 void expect_absorptivities(BedScene const& scene, std::span<OpticalSet const> sets, std::span<double const> expected,
                            double their_error) {
-  AbsorptionSettings const settings{.rays = 32768, .cut_off = 1e-6, .target_standard_error = 0.7 * target};
+  AbsorptionSettings const settings{.rays = 32768, .cut_off = 1e-6, .target_standard_error = 0.9 * target};
   Absorption const result = absorb(scene, uniform_light(scene.period()), sets, 0, settings);
   for (std::size_t k = 0; k < sets.size(); ++k) {
     SetAbsorption const& found = result.sets[k];
@@ -28,11 +28,11 @@ TEST(ReferenceLattices, HexagonalLayers) {
   struct {
     int layers;
     bool floor;
-    std::array<double, 5> expected;  ///< steel, titanium, aluminium, copper, silver
-  } const rows[] = {{1, false, {.4892, .5281, .1073, .0634, .0416}},
-                    {1, true, {.5589, .5987, .1744, .1204, .0875}},
-                    {2, false, {.5761, .6136, .1838, .1226, .0864}},
-                    {2, true, {.5948, .6321, .2236, .1693, .1334}}};
+    std::array<double, 5> expected;  ///< copper, steel, titanium, aluminium, silver
+  } const rows[] = {{1, false, {.0634, .4892, .5281, .1073, .0416}},
+                    {1, true, {.1204, .5589, .5987, .1744, .0875}},
+                    {2, false, {.1226, .5761, .6136, .1838, .0864}},
+                    {2, true, {.1693, .5948, .6321, .2236, .1334}}};
   for (auto const& row : rows) {
     SCOPED_TRACE(std::to_string(row.layers) + (row.floor ? " layers on a floor" : " layers"));
     Lattice const lattice = hexagonal_layers(row.layers);

@@ -181,7 +181,8 @@ TEST(Trace, RefusesWhatMakesNoSense) {
   BedScene const scene(powder(), plate(), {0, width});
   VoxelGrid const grid = grid_over(0);
   EXPECT_THROW(trace(scene, beam_at(1, 1e-4), steel, 0, grid, {}), PhysicsError) << "beam off the bed";
-  EXPECT_THROW(trace(scene, beam_at(2e-4, 1e-4), {}, 0, grid, {}), InputError) << "no refractive index";
+  EXPECT_THROW(trace(scene, beam_at(2e-4, 1e-4), std::span<std::complex<double> const>{}, 0, grid, {}), InputError)
+      << "no refractive index";
   EXPECT_THROW(trace(scene, beam_at(2e-4, 1e-4), std::array{std::complex<double>(3, -4)}, 0, grid, {}), InputError);
   EXPECT_THROW(trace(scene, beam_at(2e-4, 1e-4), steel, 0, grid, {.rays = 0}), InputError);
   Beam dark = beam_at(2e-4, 1e-4);
