@@ -529,8 +529,11 @@ std::vector<CaseKey> const& case_schema() {
 }
 
 bool is_needed(CaseKey const& row, Case const& c) {
-  bool const of_machine = row.table == "machine" || row.table == "heat" || name_of(row) == "powder.particles";
+  bool const counts_grains = name_of(row) == "powder.particles" && c.process == Process::calibrating;
+  bool const of_machine = row.table == "machine" || row.table == "heat" || counts_grains;
   if (of_machine && !c.has_machine()) return false;
+  bool const bed_is_there = c.process == Process::absorbing && c.absorb.bed == AbsorbingBed::file;
+  if (bed_is_there && (row.table == "contact" || (row.table == "powder" && row.key != "material"))) return false;
   switch (row.need) {
     case Need::always:
       return true;

@@ -56,8 +56,8 @@ NamedBed make_bed(Case const& checked, AbsorbOptions const& options, std::size_t
   seeded.seed += k;
   std::string const name = fmt::format("seed {}", seeded.seed);
   if (checked.absorb.bed == AbsorbingBed::settled) return {name, bed_that_settles(seeded, comm, !options.quiet)};
-  return {name, bed_that_is_spread(seeded, options.folder / fmt::format("spread_seed_{}", seeded.seed), comm,
-                                   options.quiet)};
+  return {name,
+          bed_that_is_spread(seeded, options.folder / fmt::format("spread_seed_{}", seeded.seed), comm, options.quiet)};
 }
 
 void make_folder(std::filesystem::path const& folder, Communicator const& comm) {
@@ -120,6 +120,7 @@ AbsorptionStudy run_absorption(Case const& checked, AbsorbOptions const& options
       Stopwatch const timed(study.time_dem);
       made = make_bed(checked, options, k, comm);
     }
+    if (comm.is_root() && !from_files) write_lit_bed(options.folder / fmt::format("bed_{:04}.csv", k + 1), made.lit);
     Stopwatch const timed(study.time_rays);
     raytrace::BedScene const scene(made.lit.bed, made.lit.surface, made.lit.period);
     study.beam = beam_over(made.lit, checked);

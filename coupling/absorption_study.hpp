@@ -12,12 +12,12 @@
 namespace layerloop::coupling {
 
 struct AbsorbOptions {
-  std::filesystem::path folder;         ///< results go here; made when missing
-  std::vector<BedSource> beds;          ///< files, where absorb.bed is one
-  std::vector<std::string> materials;   ///< further ones that the powder might be of
-  std::vector<double> wavelengths;      ///< further ones [m]
-  std::vector<double> temperatures;     ///< further ones of the metal [K]
-  bool derivatives = false;             ///< of the absorptivity with respect to n and k
+  std::filesystem::path folder;        ///< results go here; made when missing
+  std::vector<BedSource> beds;         ///< files, where absorb.bed is one
+  std::vector<std::string> materials;  ///< further ones that the powder might be of
+  std::vector<double> wavelengths;     ///< further ones [m]
+  std::vector<double> temperatures;    ///< further ones of the metal [K]
+  bool derivatives = false;            ///< of the absorptivity with respect to n and k
   bool quiet = false;
 };
 

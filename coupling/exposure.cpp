@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
+#include "coupling/optics_of_case.hpp"
 #include "coupling/scan_path.hpp"
 #include "raytrace/trace.hpp"
 
@@ -103,20 +103,27 @@ Exposure expose_tracks(Case const& checked, std::int32_t layer, raytrace::BedSce
   Exposure exposure;
   exposure.source.tracks = scan_path(checked, layer);
   std::vector<BeamStop> const stops = beam_stops(exposure.source.tracks, checked.optics.position_spacing);
-  std::vector<std::complex<double>> const refractive_index{checked.material.refractive_index};
+  bool const prescribed = checked.laser.absorptivity.has_value();
+  raytrace::OpticalSet const optics = prescribed ? raytrace::OpticalSet{} : optical_set(checked);
+  raytrace::Beam beam = spot_beam(checked, Vec3::Zero(), checked.laser.power);
 
   std::vector<AbsorbedPower> traced(stops.size());
   Progress progress("trace", static_cast<double>(stops.size()), show_progress);
   for (std::size_t s = 0; s < stops.size(); ++s) {
     if (static_cast<int>(s) % comm.size() != comm.rank()) continue;
-    if (checked.laser.absorptivity) {
+    if (prescribed) {
       traced[s] = prescribed_absorption(stops[s], *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
     } else {
-      raytrace::Beam const beam{stops[s].centre, stops[s].power, checked.laser.spot_radius()};
+      beam.centre = stops[s].centre;
+      beam.power = stops[s].power;
       // Every position draws its own rays: the errors of the positions are independent.
       std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | s;
-      raytrace::TraceSettings const settings{.rays = checked.optics.rays, .seed = checked.seed, .id = id};
-      traced[s] = raytrace::trace(scene, beam, refractive_index, 0, cells.grid, settings);
+      raytrace::TraceSettings const settings{.rays = checked.optics.rays,
+                                             .seed = checked.seed,
+                                             .id = id,
+                                             .polarisation = polarisation_of(checked),
+                                             .diffuse_share = diffuse_share(checked)};
+      traced[s] = raytrace::trace(scene, beam, optics, floor_index(checked), cells.grid, settings);
     }
     progress.update(static_cast<double>(s + 1));
   }

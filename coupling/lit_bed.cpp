@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include "core/bed_file.hpp"
+#include "core/case_file.hpp"
 #include "core/error.hpp"
 #include "coupling/checkpoint.hpp"
 #include "coupling/layer_loop.hpp"
 #include "coupling/optics_of_case.hpp"
-#include "core/case_file.hpp"
 #include "dem/settled_plate.hpp"
 
 namespace layerloop::coupling {
@@ -67,9 +67,10 @@ void check_materials(PowderBed& bed, Case const& checked, std::string const& pat
   for (std::size_t i = 0; i < bed.size(); ++i) {
     if (checked.admixtures.empty()) bed.material[i] = 0;
     if (bed.material[i] < 0 || static_cast<std::size_t>(bed.material[i]) > checked.admixtures.size())
-      throw InputError(fmt::format("{}: grain {} has material {} (the case has materials 0 to {}: powder.material, then "
-                                   "the others of [powder.mixture] by name) give it one of them",
-                                   path, bed.id[i], bed.material[i], checked.admixtures.size()));
+      throw InputError(
+          fmt::format("{}: grain {} has material {} (the case has materials 0 to {}: powder.material, then "
+                      "the others of [powder.mixture] by name) give it one of them",
+                      path, bed.id[i], bed.material[i], checked.admixtures.size()));
   }
 }
 

@@ -15,8 +15,8 @@ namespace layerloop::coupling {
 
 /// A file of grains and what it may lack. Lengths in m.
 struct BedSource {
-  std::filesystem::path bed;                      ///< csv, dump, extxyz or h5
-  std::filesystem::path mesh;                     ///< STL, or empty
+  std::filesystem::path bed;                              ///< csv, dump, extxyz or h5
+  std::filesystem::path mesh;                             ///< STL, or empty
   std::optional<double> periodic_x, periodic_y, floor_z;  ///< replace those of the file
 };
 
@@ -29,8 +29,8 @@ struct LitBed {
   std::string origin;                  ///< in words
 };
 
-/// From a file. Open sides are lit no nearer than a quarter of the bed, its height or three largest grains, whichever
-/// is least. \throws InputError, FileError
+/// From a file. Open sides are lit no nearer than the height of the bed and three largest grains, or a quarter of it.
+/// \throws InputError, FileError
 LitBed bed_of_file(Case const& checked, BedSource const& source);
 
 /// Grains at rest on a level plate. @note Collective

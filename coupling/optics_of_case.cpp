@@ -19,9 +19,10 @@ double resistivity_ratio(Case const& checked, Material const& metal) {
   double const T = checked.optics.temperature, strength = checked.effect_strength("optical_temperature");
   if (T == room_temperature || strength == 0) return 1;
   if (metal.conductivity.value.empty())
-    throw InputError(fmt::format("optics.temperature = {:g} K needs the conductivity of {} (its resistivity follows "
-                                 "from it) give material.{}.conductivity",
-                                 T, metal.name, metal.name));
+    throw InputError(
+        fmt::format("optics.temperature = {:g} K needs the conductivity of {} (its resistivity follows "
+                    "from it) give material.{}.conductivity",
+                    T, metal.name, metal.name));
   double const ratio = T / metal.conductivity(T) * metal.conductivity(room_temperature) / room_temperature;
   return 1 + strength * (ratio - 1);
 }
@@ -31,9 +32,10 @@ std::complex<double> index_of(Case const& checked, Material const& metal) {
   if (ratio == 1) return metal.refractive_index;
   FreeElectrons const* const electrons = free_electrons(metal.optical_data);
   if (!electrons)
-    throw InputError(fmt::format("optics.temperature = {:g} K: how the index of {} changes is not known (its optical "
-                                 "constants, \"{}\", have no conduction electrons) give the index of the hot metal",
-                                 checked.optics.temperature, metal.name, metal.optical_data));
+    throw InputError(
+        fmt::format("optics.temperature = {:g} K: how the index of {} changes is not known (its optical "
+                    "constants, \"{}\", have no conduction electrons) give the index of the hot metal",
+                    checked.optics.temperature, metal.name, metal.optical_data));
   return heated_index(metal.refractive_index, *electrons, checked.laser.wavelength, ratio);
 }
 
@@ -51,9 +53,10 @@ raytrace::Surface surface_of(Case const& checked, Material const& metal) {
   if (optics.oxide_index) {
     surface.film_index = {optics.oxide_index->at(0), optics.oxide_index->at(1)};
   } else if (oxide.empty()) {
-    throw InputError(fmt::format("optics.oxide_thickness: no oxide of {} is known (optical constants \"{}\") give "
-                                 "optics.oxide_index",
-                                 metal.name, metal.optical_data));
+    throw InputError(
+        fmt::format("optics.oxide_thickness: no oxide of {} is known (optical constants \"{}\") give "
+                    "optics.oxide_index",
+                    metal.name, metal.optical_data));
   } else {
     surface.film_index = optical_data(oxide)(checked.laser.wavelength);
   }
@@ -79,9 +82,10 @@ bool has_own_floor(Case const& checked) {
 
 void choose_index(Material& metal, double wavelength) {
   if (metal.optical_data.empty())
-    throw InputError(fmt::format("the index of {} was given by hand for one wavelength (another is asked for) name its "
-                                 "optical_data instead",
-                                 metal.name));
+    throw InputError(
+        fmt::format("the index of {} was given by hand for one wavelength (another is asked for) name its "
+                    "optical_data instead",
+                    metal.name));
   metal.refractive_index = optical_data(metal.optical_data)(wavelength);
 }
 
@@ -175,8 +179,12 @@ Case with_powder_of(Case checked, std::string const& metal) {
     chosen.conductivity = {};
   }
   choose_index(chosen, checked.laser.wavelength);
-  checked.material = chosen;
-  for (Material& other : checked.admixtures) other = chosen;
+  auto const replace = [&](Material& old) {
+    chosen.name = old.name;  // so that surfaces keep their places
+    old = chosen;
+  };
+  replace(checked.material);
+  for (Material& other : checked.admixtures) replace(other);
   return checked;
 }
 
