@@ -8,6 +8,7 @@
 #include "apps/verbs.hpp"
 #include "core/bed_file.hpp"
 #include "dem/settled_bed_bench.hpp"
+#include "raytrace/ray_bench.hpp"
 
 namespace layerloop::apps {
 namespace {
@@ -16,6 +17,8 @@ struct BenchOptions {
   std::filesystem::path packing;
   std::int64_t steps = 1000;
   int threads = 1;
+  std::int64_t rays = 300'000;
+  bool uniform = false;
 };
 
 void bench_dem(BenchOptions const& options) {
@@ -39,6 +42,37 @@ void bench_dem(BenchOptions const& options) {
   fmt::print("{}\n", json.dump(2));
 }
 
+void bench_rays(BenchOptions const& options) {
+  using raytrace::BenchLight;
+  raytrace::RayBench const r = raytrace::bench_rays(read_bed(options.packing), options.rays,
+                                                    options.uniform ? BenchLight::uniform : BenchLight::spot);
+  nlohmann::ordered_json const json{
+      {"particles", r.particles},
+      {"paths", r.paths},
+      {"secondary_rays", r.secondary_rays},
+      {"light", options.uniform ? "uniform" : "spot"},
+      {"backend", r.grid_chosen ? "grid" : "embree"},
+      {"rays_per_second", r.tracer.median},
+      {"embree_rays_per_second", r.built_in.median},
+      {"embree_double_rays_per_second", r.embree.median},
+      {"grid_rays_per_second", r.grid.median},
+      {"tracer_over_embree", r.tracer.median / r.built_in.median},
+      {"grid_over_embree", r.grid.median / r.built_in.median},
+      {"best",
+       {{"rays_per_second", r.tracer.best},
+        {"embree_rays_per_second", r.built_in.best},
+        {"embree_double_rays_per_second", r.embree.best},
+        {"grid_rays_per_second", r.grid.best}}},
+      {"build_seconds", {{"built_in", r.built_in_build}, {"embree", r.embree_build}, {"grid", r.grid_build}}},
+      {"hits_differing", r.hits_differing},
+      {"hits_differing_plainly", r.hits_differing_plainly},
+      {"absorptivity", r.reached_absorptivity},
+      {"standard_error", r.reached_standard_error},
+      {"seconds_to_standard_error", r.seconds_to_standard_error},
+      {"rays_to_standard_error", r.rays_to_standard_error}};
+  fmt::print("{}\n", json.dump(2));
+}
+
 }  // namespace
 
 void add_bench(CLI::App& program, Action& chosen) {
@@ -52,6 +86,13 @@ void add_bench(CLI::App& program, Action& chosen) {
       ->check(CLI::Range(1, 1'000'000'000));
   verb->add_option("--threads", options->threads, "threads of each rank")->check(CLI::Range(1, 1024));
   verb->callback([=, &chosen] { chosen = [=] { bench_dem(*options); }; });
+
+  CLI::App* rays = bench->add_subcommand("rays", "flights between the grains of a bed, beside Embree's own spheres");
+  rays->add_option("bed", options->packing, "the bed: csv, dump, extxyz or h5")->required()->type_name("BED");
+  rays->add_option("--rays", options->rays, "reflected rays that are timed, about")
+      ->check(CLI::Range(1000, 1'000'000'000));
+  rays->add_flag("--uniform", options->uniform, "light over the whole bed instead of a spot of 60 um");
+  rays->callback([=, &chosen] { chosen = [=] { bench_rays(*options); }; });
 }
 
 }  // namespace layerloop::apps

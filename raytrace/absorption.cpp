@@ -194,7 +194,12 @@ Absorption absorb(BedScene const& scene, Beam const& beam, std::span<OpticalSet 
   auto const per_replicate = [&](std::int64_t rays) { return (rays + settings.replicates - 1) / settings.replicates; };
   trace_rays(problem, per_replicate(settings.rays), tally, ranks);
   double const target = settings.target_standard_error;
-  auto const precise = [&] { return target == 0 || tally.absorptivity(0).error <= target; };
+  auto const precise = [&] {
+    for (std::size_t k = 0; target > 0 && k < sets.size(); ++k) {
+      if (!(tally.absorptivity(k).error <= target)) return false;
+    }
+    return true;
+  };
   while (!precise() && tally.replicate_rays < per_replicate(settings.max_rays)) {
     trace_rays(problem, std::min(2 * tally.replicate_rays, per_replicate(settings.max_rays)), tally, ranks);
   }

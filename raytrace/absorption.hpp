@@ -26,7 +26,7 @@ struct AbsorptionSettings {
   double diffuse_share = 0;  ///< of the reflected power that leaves by Lambert's law, the rest like from a mirror
   double cut_off = 1e-7;     ///< a ray ends when this share of its power is left; the rest is booked as residual
   std::int64_t max_bounces = 10000;
-  double target_standard_error = 0;  ///< of set 0: > 0 doubles the rays until it is reached, or `max_rays`
+  double target_standard_error = 0;  ///< > 0: doubles the rays until every set has reached it, or `max_rays`
   bool derivatives = false;          ///< of the absorptivity with respect to n and k of every material
   std::optional<VoxelGrid> grid{};   ///< sorts what is absorbed into cells
   std::int64_t depth_bins = 50;

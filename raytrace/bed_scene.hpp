@@ -29,32 +29,37 @@ struct Hit {
   Vec3 normal = Vec3::Zero();  ///< outward unit normal
 };
 
-/// A powder bed and the triangles below it, ready for ray queries (Embree). Surfaces are seen from outside only: a ray
-/// that leaves a grain or a triangle cannot meet it from within, so no offset of ray origins is needed.
-///
-/// Embree finds candidates in single precision, in coordinates about the middle of the scene; grains are then
-/// intersected in double precision inside the traversal, triangles once their plane is known. Queries are const and
-/// safe from many threads.
+/// What finds the grain that a ray meets first. The hits are the same (one closed form in double precision).
+enum class Backend {
+  automatic,  ///< the faster one for the sizes of this bed
+  grid,       ///< sphere_grid.hpp: grains of similar size
+  embree      ///< embree_scene.hpp: any sizes
+};
+
+/// A powder bed and the triangles below it, ready for ray queries. Surfaces are seen from outside only: a ray that
+/// leaves a grain or a triangle cannot meet it from within, so no offset of ray origins is needed, and overlapping
+/// grains are one body, the union of their balls. Triangles are always Embree's. Queries are const and safe from many
+/// threads.
 class BedScene {
  public:
   /// Makes and keeps copies of what it needs: later changes of bed or substrate are not seen.
   /// \param period  edge of the periodic tile [0, period) along x and y [m]; 0: open on these sides. Grains that reach
-  /// over a
-  ///                periodic edge are copied to the other side; the substrate must reach over it by itself (or be
-  ///                flat).
+  ///                over a periodic edge are copied to the other side; the substrate must reach over it by itself.
   /// \throws InputError    nothing to trace, or a grain centre outside a periodic tile
   /// \throws PhysicsError  coordinates that are not numbers
-  BedScene(PowderBed const& bed, TriangleSurface const& substrate, std::array<double, 2> period = {0, 0});
+  BedScene(PowderBed const& bed, TriangleSurface const& substrate, std::array<double, 2> period = {0, 0},
+           Backend backend = Backend::automatic);
   ~BedScene();
   BedScene(BedScene&&) noexcept;
 
   /// First surface along the ray, which goes round through the periodic sides as often as needed.
-  Hit first_hit(Ray ray) const;
+  Hit first_hit(Ray const& ray) const;
   /// The same without periodicity: the tile and the copied grains at its edges as they stand, for pictures.
   Hit first_hit_in_tile(Ray const& ray) const;
   /// Whether anything lies within `distance` [m] along the ray (no periodicity).
   bool is_blocked(Ray const& ray, double distance) const;
 
+  Backend backend() const;                        ///< the one that serves; never automatic
   std::int32_t grains() const;                    ///< rows of the bed
   double radius(std::int32_t row) const;          ///< of a grain [m]
   std::int32_t material(std::int32_t row) const;  ///< of a grain

