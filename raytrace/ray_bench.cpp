@@ -180,8 +180,7 @@ Flights record(BedScene const& scene, Beam const& beam, TraceSettings const& set
   for (std::int64_t r = 0; r < settings.replicates; ++r) {
     auto const u = uniform4(settings.seed, RandomStream::ray_shift, settings.id, static_cast<std::uint32_t>(r));
     for (std::int64_t i = 0; i < settings.rays / settings.replicates; ++i) {
-      std::array<double, 2> const start = ray_start(beam, i, {u[0], u[1]});
-      record_path(scene, {{start[0], start[1], height}, -Vec3::UnitZ()}, settings, flights);
+      record_path(scene, beam_ray(beam, height, i, {u[0], u[1]}), settings, flights);
     }
   }
   return flights;
