@@ -48,7 +48,8 @@ Case case_of(AbsorbArguments const& arguments) {
   std::vector<std::string> const own = overrides_of(arguments);
   from.overrides.insert(from.overrides.begin(), own.begin(), own.end());
   if (!from.case_file.empty()) return read_case(from, Process::absorbing);
-  if (arguments.beds.empty()) throw CLI::RequiredError("a case file or --bed");
+  if (arguments.beds.empty())
+    throw InputError("neither a case nor a bed (what is to be lit?) name FILE.toml or --bed FILE");
   return case_of_text(from, bare_case, Process::absorbing);
 }
 
