@@ -107,8 +107,16 @@ def run(study):
         results[f"metals_{name}"] = [(m["name"], m["refractive_index"], *figure(m)) for m in s["sets"][1:]]
     colours = study.relight("colours", "thickness_1.0", ["--wavelengths", "450 nm,515 nm,532 nm,1030 nm,1080 nm"])
     results["colours"] = [(m["wavelength"], *figure(m)) for m in colours["sets"]]
-    warm = study.relight("temperatures", "thickness_1.0", ["--temperatures", "600,1000,1600"])
-    results["temperatures"] = [(m["name"], *figure(m)) for m in warm["sets"]]
+    results["temperatures"] = {}
+    for metal in ("316L", "Al", "Cu"):
+        warm = study.relight(f"temperatures_{metal}", "thickness_4.0", ["--temperatures", "500 K,700 K,900 K"],
+                             {"powder.material": metal})
+        results["temperatures"][metal] = [figure(m) for m in warm["sets"]]
+    mixed = study.settle("mixture", grains(2.5 * DIAMETER, SIDE), settings={
+        "powder.material": "AlSi10Mg", "powder.mixture.AlSi10Mg": 0.96, "powder.mixture.Cu": 0.04})
+    results["mixture"] = {name: (mixed["by_material"][name], mixed["by_material_figures"][name + "_u_bed"])
+                          for name in mixed["by_material"]}
+    results["mixture"]["sum"] = figure(mixed)
     for film in (0, 5, 20, 50, 75, 100, 125, 150, 200):
         s = study.relight(f"oxide_{film}", "thickness_4.0", settings={
             "powder.material": "Al", "optics.oxide_thickness": f"{film} nm"})
