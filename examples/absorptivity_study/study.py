@@ -117,6 +117,10 @@ def run(study):
     results["mixture"] = {name: (mixed["by_material"][name], mixed["by_material_figures"][name + "_u_bed"])
                           for name in mixed["by_material"]}
     results["mixture"]["sum"] = figure(mixed)
+    for name, beds in (("thin", "thickness_1.5"), ("deep", "thickness_4.0")):
+        s = study.relight(f"diode_{name}", beds, ["--materials", "Fe (Johnson 1974),Ti (Johnson 1974),Al (Rakic 1995)"],
+                          {"laser.wavelength": "970 nm"})
+        results[f"diode_{name}"] = {m["name"]: figure(m) for m in s["sets"][1:]}
     for film in (0, 5, 20, 50, 75, 100, 125, 150, 200):
         s = study.relight(f"oxide_{film}", "thickness_4.0", settings={
             "powder.material": "Al", "optics.oxide_thickness": f"{film} nm"})
