@@ -3,7 +3,7 @@
 //   blade 250 um wide, its lower face level with the platforms, front from 290 to 3210 um at 100 mm/s
 // 4500 grains (13, 21, 28, 42 um; 0.2, 0.2, 0.5, 0.1 by number) are dropped at 0.1 m/s from a loose cloud, settle for
 // 6 ms, are spread, and rest for 10 ms. Writes dumps in the text format of LIGGGHTS, for reference_spread.py.
-//   reference_spread OUT [SEED [TAG]]
+//   reference_spread OUT [SEED [TAG [sleep]]]          sleep: grains at rest sleep (dem/sleep.hpp)
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -144,13 +144,14 @@ Rig rig(double blade_moved, double blade_speed) {
   return rig;
 }
 
-void run(std::filesystem::path const& out, std::uint64_t seed, std::string const& tag) {
+void run(std::filesystem::path const& out, std::uint64_t seed, std::string const& tag, bool grains_sleep) {
   double const density = 9187, fraction = thesis_contact().time_step_fraction;
   Motion const motion{.between_grains = grain_law(thesis_contact()),
                       .at_walls = wall_law(thesis_contact()),
                       .contact = thesis_contact(),
                       .density = density,
-                      .time_step = fraction * rayleigh_time(6.5 * um, density, thesis_contact())};
+                      .time_step = fraction * rayleigh_time(6.5 * um, density, thesis_contact()),
+                      .grains_sleep = grains_sleep};
   auto const steps = [&](double time) { return static_cast<std::int64_t>(time / motion.time_step); };
   auto const path = [&](std::string const& name) { return out / fmt::format("spread_{}_{}", tag, name); };
   Communicator const comm;
@@ -190,8 +191,9 @@ int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   int result = 0;
   try {
-    if (argc < 2) throw InputError("usage: reference_spread OUT [SEED [TAG]]");
-    run(argv[1], argc > 2 ? std::stoull(argv[2]) : 1, argc > 3 ? argv[3] : "s1");
+    if (argc < 2) throw InputError("usage: reference_spread OUT [SEED [TAG [sleep]]]");
+    run(argv[1], argc > 2 ? std::stoull(argv[2]) : 1, argc > 3 ? argv[3] : "s1",
+        argc > 4 && std::string(argv[4]) == "sleep");
   } catch (std::exception const& error) {
     fmt::print(stderr, "{}\n", error.what());
     result = 1;

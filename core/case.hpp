@@ -152,6 +152,7 @@ struct OpticsSettings {
   PolarisationModel polarisation_model = PolarisationModel::averaged;
   std::int64_t rays = 0;        ///< per beam position
   double position_spacing = 0;  ///< between the beam positions that are traced [m]
+  bool retrace = true;          ///< at every position on the surface that has melted by then
 };
 
 struct ScanSettings {

@@ -248,6 +248,8 @@ std::vector<CaseKey> laser_rows() {
       {"optics", "position_spacing", at<optics, &O::position_spacing>,
        D::length, {1e-6, 1e-3}, Need::never, "\"20 um\"",
        "Distance along a track between beam positions that are traced."},
+      {"optics", "retrace", at<optics, &O::retrace>, D::none, {}, Need::never, "true",
+       "Whether each position is traced on the surface that has melted by then, or on the layer as it was spread."},
 
       {"scan", "kind", choice<scan, &S::kind>({"track", "hatch"}), D::none, {}, Need::never, "\"hatch\"",
        "One track, or parallel tracks to and fro."},

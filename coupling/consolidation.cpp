@@ -27,11 +27,11 @@ std::array<std::int64_t, 3> offset_on_lattice(VoxelGrid const& heat, VoxelGrid c
 }
 
 /// Melted cells of the heat grid, flagged on the solid's lattice.
-std::vector<char> melted_on_lattice(SolidField const& solid, MeltRecord const& melt) {
+std::vector<char> melted_on_lattice(SolidField const& solid, MeltedCells const& melt) {
   auto const offset = offset_on_lattice(melt.grid, solid.grid);
   std::vector<char> melted(static_cast<std::size_t>(solid.grid.size()), 0);
   for (std::int64_t cell = 0; cell < melt.grid.size(); ++cell) {
-    if (!melt.melted[static_cast<std::size_t>(cell)]) continue;
+    if (!melt.flags[static_cast<std::size_t>(cell)]) continue;
     auto const c = melt.grid.coordinates(cell);
     std::array<std::int64_t, 3> const on{c[0] + offset[0], c[1] + offset[1], c[2] + offset[2]};
     if (solid.grid.contains(on)) melted[static_cast<std::size_t>(solid.grid.index(on[0], on[1], on[2]))] = 1;
@@ -55,22 +55,22 @@ std::vector<char> half_or_more_melted(PowderBed const& bed, std::vector<GrainCel
 }
 
 /// Columns whose topmost plate cell melted.
-std::vector<char> molten_plate(SolidField const& solid, MeltRecord const& melt) {
+std::vector<char> molten_plate(SolidField const& solid, MeltedCells const& melt) {
   auto const offset = offset_on_lattice(melt.grid, solid.grid);
   std::vector<char> molten(static_cast<std::size_t>(solid.columns()), 0);
   std::int64_t const top = -1 - offset[2];  // layer of the heat grid
   for (std::int64_t j = 0; top >= 0 && j < melt.grid.n[1]; ++j) {
     for (std::int64_t i = 0; i < melt.grid.n[0]; ++i) {
       molten[static_cast<std::size_t>(i + offset[0] + solid.grid.n[0] * (j + offset[1]))] =
-          melt.melted[static_cast<std::size_t>(melt.grid.index(i, j, top))];
+          melt.flags[static_cast<std::size_t>(melt.grid.index(i, j, top))];
     }
   }
   return molten;
 }
 
 /// Splits metal and grains into what is liquid and what stays, and takes the remelted metal out of the field.
-MeltColumns melt_down(SolidField& solid, std::vector<GrainCells> const& grains, std::vector<char> const& taken,
-                      std::vector<char> const& melted, double density) {
+MeltColumns liquid_and_rest(SolidField& solid, std::vector<GrainCells> const& grains, std::vector<char> const& taken,
+                            std::vector<char> const& melted, double density) {
   MeltColumns columns{solid.grid,
                       fill_fraction(solid, density),
                       std::vector<double>(solid.mass.size(), 0.0),
@@ -149,6 +149,12 @@ std::vector<GrainCells> grains_on_lattice(SolidField& solid, PowderBed const& be
   return grains;
 }
 
+std::vector<GrainCells> grains_near(SolidField& solid, PowderBed const& bed, Case const& checked,
+                                    VoxelGrid const& heated) {
+  double const reach = 2 * *std::max_element(checked.powder.diameters.begin(), checked.powder.diameters.end());
+  return grains_on_lattice(solid, bed, checked, heated.origin.x() - reach, heated.upper().x() + reach);
+}
+
 double take_from_bed(PowderBed& bed, std::vector<char> const& taken, Fate fate, Case const& checked,
                      Consolidation& figures) {
   CompensatedSum volume;
@@ -196,24 +202,29 @@ void check_mass(SolidField const& solid, double mass_before, Consolidation const
       found, expected));
 }
 
+MeltedDown melt_down(SolidField& solid, PowderBed const& bed, std::vector<GrainCells>& grains, MeltedCells const& melt,
+                     double levelling_length, double density) {
+  std::vector<char> const melted = melted_on_lattice(solid, melt);
+  MeltedDown down{.taken = half_or_more_melted(bed, grains, melted, solid.grid.cell_volume())};
+  MeltColumns columns = liquid_and_rest(solid, grains, down.taken, melted, density);
+  columns.molten_plate = molten_plate(solid, melt);
+  SettledMelt const settled = settle_melt(columns, std::max(levelling_length, solid.grid.cell));
+  down.mean_height_change = settled.mean_height_change;
+  add_metal(solid, settled.metal, density);
+  return down;
+}
+
 Consolidation consolidate(SolidField& solid, PowderBed& bed, TriangleSurface& substrate, MeltRecord const& melt,
                           CellContent const& cells, Case const& checked) {
   Consolidation figures;
   double const density = checked.material.density, mass_before = metal_mass(solid);
-  double const reach = 2 * *std::max_element(checked.powder.diameters.begin(), checked.powder.diameters.end());
-  auto grains = grains_on_lattice(solid, bed, checked, cells.grid.origin.x() - reach, cells.grid.upper().x() + reach);
-  std::vector<char> const melted = melted_on_lattice(solid, melt);
-  std::vector<char> const taken = half_or_more_melted(bed, grains, melted, solid.grid.cell_volume());
-
+  auto grains = grains_near(solid, bed, checked, cells.grid);
+  MeltedDown const down = melt_down(solid, bed, grains, {melt.grid, melt.melted}, 0.5 * melt.pool.width, density);
   CompensatedSum in_melted_cells;
   for (GrainCells const& grain : grains) in_melted_cells.add(grain.in_melted_cells);
   figures.melted_cell_mass = density * in_melted_cells.value();
-  MeltColumns columns = melt_down(solid, grains, taken, melted, density);
-  columns.molten_plate = molten_plate(solid, melt);
-  SettledMelt const settled = settle_melt(columns, std::max(0.5 * melt.pool.width, solid.grid.cell));
-  figures.surface_height_correction = settled.mean_height_change;
-  add_metal(solid, settled.metal, density);
-  take_from_bed(bed, taken, Fate::melted, checked, figures);
+  figures.surface_height_correction = down.mean_height_change;
+  take_from_bed(bed, down.taken, Fate::melted, checked, figures);
 
   embed(solid, bed, substrate, checked, figures);
   check_mass(solid, mass_before, figures);

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "core/case.hpp"
@@ -39,6 +40,26 @@ struct GrainCells {
 /// them.
 std::vector<GrainCells> grains_on_lattice(SolidField& solid, PowderBed const& bed, Case const& checked, double x_from,
                                           double x_to);
+
+/// The same for all grains that can touch the heated cells.
+std::vector<GrainCells> grains_near(SolidField& solid, PowderBed const& bed, Case const& checked,
+                                    VoxelGrid const& heated);
+
+/// Cells of the heat grid that have been above the liquidus; flags: shape grid.size().
+struct MeltedCells {
+  VoxelGrid const& grid;
+  std::span<char const> flags;
+};
+
+struct MeltedDown {
+  std::vector<char> taken;        ///< by row of the bed: the grain has melted
+  double mean_height_change = 0;  ///< by levelling [m]
+};
+
+/// Steps 1 and 2 of consolidate(): remelts the solid, adds the melted grains (which stay in the bed), and lets the
+/// liquid settle. \param grains  from grains_near(); their in_melted_cells are filled \param levelling_length [m]
+MeltedDown melt_down(SolidField& solid, PowderBed const& bed, std::vector<GrainCells>& grains, MeltedCells const& melt,
+                     double levelling_length, double density);
 
 /// Removes the flagged grains from the bed and books their mass as melted (and trapped, if so). \return their mass [kg]
 enum class Fate { melted, trapped };

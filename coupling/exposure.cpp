@@ -4,21 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "core/error.hpp"
-#include "core/progress.hpp"
 #include "coupling/optics_of_case.hpp"
 #include "coupling/scan_path.hpp"
 #include "raytrace/trace.hpp"
 
 namespace layerloop::coupling {
 namespace {
-
-/// A stretch of track, heated as from its middle.
-struct BeamStop {
-  Vec3 centre;
-  double begin_time, end_time;
-  double power;
-};
 
 std::vector<BeamStop> beam_stops(std::vector<Track> const& tracks, double spacing) {
   std::vector<BeamStop> stops;
@@ -77,73 +68,56 @@ AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, d
   return power;
 }
 
-/// What every rank needs of another rank's trace.
-void share_out(AbsorbedPower& power, int owner, Communicator const& comm) {
-  std::vector<double> scalars{power.incident,       power.absorbed,     power.escaped,
-                              power.residual,       power.outside_grid, power.absorptivity,
-                              power.standard_error, power.mean_bounces, static_cast<double>(power.rays)};
-  comm.broadcast(power.cell, owner);
-  comm.broadcast(power.watts, owner);
-  comm.broadcast(scalars, owner);
-  power.incident = scalars[0];
-  power.absorbed = scalars[1];
-  power.escaped = scalars[2];
-  power.residual = scalars[3];
-  power.outside_grid = scalars[4];
-  power.absorptivity = scalars[5];
-  power.standard_error = scalars[6];
-  power.mean_bounces = scalars[7];
-  power.rays = static_cast<std::int64_t>(scalars[8]);
-}
-
 }  // namespace
 
-Exposure expose_tracks(Case const& checked, std::int32_t layer, raytrace::BedScene const& scene,
-                       CellContent const& cells, Communicator const& comm, bool show_progress) {
+Exposure plan_exposure(Case const& checked, std::int32_t layer) {
   Exposure exposure;
-  exposure.source.tracks = scan_path(checked, layer);
-  std::vector<BeamStop> const stops = beam_stops(exposure.source.tracks, checked.optics.position_spacing);
-  bool const prescribed = checked.laser.absorptivity.has_value();
-  raytrace::OpticalSet const optics = prescribed ? raytrace::OpticalSet{} : optical_set(checked);
-  raytrace::Beam beam = spot_beam(checked, Vec3::Zero(), checked.laser.power);
-
-  std::vector<AbsorbedPower> traced(stops.size());
-  Progress progress("trace", static_cast<double>(stops.size()), show_progress);
-  for (std::size_t s = 0; s < stops.size(); ++s) {
-    if (static_cast<int>(s) % comm.size() != comm.rank()) continue;
-    if (prescribed) {
-      traced[s] = prescribed_absorption(stops[s], *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
-    } else {
-      beam.centre = stops[s].centre;
-      beam.power = stops[s].power;
-      // Every position draws its own rays: the errors of the positions are independent.
-      std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | s;
-      raytrace::TraceSettings const settings{.rays = checked.optics.rays,
-                                             .seed = checked.seed,
-                                             .id = id,
-                                             .polarisation = polarisation_of(checked),
-                                             .diffuse_share = diffuse_share(checked)};
-      traced[s] = raytrace::trace(scene, beam, optics, floor_index(checked), cells.grid, settings);
-    }
-    progress.update(static_cast<double>(s + 1));
-  }
-
-  double on_time = 0;
-  for (BeamStop const& stop : stops) on_time += stop.end_time - stop.begin_time;
   HeatSource& source = exposure.source;
-  source.time.push_back(stops.front().begin_time);
-  for (std::size_t s = 0; s < stops.size(); ++s) {
-    share_out(traced[s], static_cast<int>(s) % comm.size(), comm);
-    if (stops[s].begin_time > source.time.back()) {  // the beam was off since the last track
-      source.power.emplace_back();
-      source.time.push_back(stops[s].begin_time);
+  source.tracks = scan_path(checked, layer);
+  exposure.stops = beam_stops(source.tracks, checked.optics.position_spacing);
+  source.time.push_back(exposure.stops.front().begin_time);
+  for (std::size_t s = 0; s < exposure.stops.size(); ++s) {
+    if (exposure.stops[s].begin_time > source.time.back()) {  // the beam was off since the last track
+      exposure.stop_of_stretch.push_back(-1);
+      source.time.push_back(exposure.stops[s].begin_time);
     }
-    accumulate(exposure.mean, traced[s], (stops[s].end_time - stops[s].begin_time) / on_time);
-    exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(traced[s]));
-    source.power.push_back(std::move(traced[s]));
-    source.time.push_back(stops[s].end_time);
+    exposure.stop_of_stretch.push_back(static_cast<std::int64_t>(s));
+    source.time.push_back(exposure.stops[s].end_time);
+  }
+  source.power.resize(exposure.stop_of_stretch.size());
+  if (!checked.laser.absorptivity) {
+    exposure.beam = spot_beam(checked, Vec3::Zero(), checked.laser.power);
+    exposure.optics = optical_set(checked);
   }
   return exposure;
+}
+
+AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene,
+                                    CellContent const& cells, Case const& checked, std::int32_t layer) {
+  AbsorbedPower& power = exposure.source.power[stretch];
+  std::int64_t const s = exposure.stop_of_stretch[stretch];
+  if (s < 0) return power;
+  BeamStop const& stop = exposure.stops[static_cast<std::size_t>(s)];
+  if (checked.laser.absorptivity) {
+    power = prescribed_absorption(stop, *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
+  } else {
+    raytrace::Beam beam = exposure.beam;
+    beam.centre = stop.centre;
+    beam.power = stop.power;
+    // Every position draws its own rays: the errors of the positions are independent.
+    std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint64_t>(s);
+    raytrace::TraceSettings const settings{.rays = checked.optics.rays,
+                                           .seed = checked.seed,
+                                           .id = id,
+                                           .polarisation = polarisation_of(checked),
+                                           .diffuse_share = diffuse_share(checked)};
+    power = raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings);
+  }
+  double on_time = 0;
+  for (BeamStop const& other : exposure.stops) on_time += other.end_time - other.begin_time;
+  accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / on_time);
+  exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(power));
+  return power;
 }
 
 AreaMap absorbed_energy(HeatSource const& source, VoxelGrid const& grid) {

@@ -9,23 +9,37 @@
 #include "core/heat_source.hpp"
 #include "core/powder_bed.hpp"
 #include "core/triangle_surface.hpp"
+#include "raytrace/beam.hpp"
 #include "raytrace/bed_scene.hpp"
+#include "raytrace/surface.hpp"
 
 namespace layerloop::coupling {
 
-/// One layer's exposure: what the beam brings at every position, and the mean over the exposure for the ledger.
+/// A stretch of track, lit as from its middle.
+struct BeamStop {
+  Vec3 centre;
+  double begin_time, end_time;
+  double power;
+};
+
+/// One layer's exposure: positions `optics.position_spacing` apart along every track, and what was absorbed there.
 struct Exposure {
-  HeatSource source;
-  AbsorbedPower mean;  ///< over the time that the beam is on
+  raytrace::Beam beam;          ///< but for place and power
+  raytrace::OpticalSet optics;  ///< of bed and part; none with laser.absorptivity given
+  std::vector<BeamStop> stops;
+  std::vector<std::int64_t> stop_of_stretch;  ///< of the source; -1: the beam is off
+  HeatSource source;                          ///< powers empty until their stretch has been exposed
+  AbsorbedPower mean;                         ///< over the time that the beam is on
   double worst_ray_energy_error = 0;
 };
 
-/// Traces the beam at positions `optics.position_spacing` apart along every track (each stands for its stretch of the
-/// track), shared out over the ranks by position, so that the result does not depend on their number. With
-/// laser.absorptivity given, that share of the beam is put on the topmost metal of each column instead. \note
-/// Collective
-Exposure expose_tracks(Case const& checked, std::int32_t layer, raytrace::BedScene const& scene,
-                       CellContent const& cells, Communicator const& comm, bool show_progress);
+/// Where and when the beam stands; nothing is absorbed yet.
+Exposure plan_exposure(Case const& checked, std::int32_t layer);
+
+/// Traces the beam at the position of a stretch and books it. With laser.absorptivity given, that share of the beam is
+/// put on the topmost metal of each column instead. \return what is absorbed; no cells with the beam off
+AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene,
+                                    CellContent const& cells, Case const& checked, std::int32_t layer);
 
 /// Energy absorbed per area, seen from above [J/m^2].
 AreaMap absorbed_energy(HeatSource const& source, VoxelGrid const& grid);

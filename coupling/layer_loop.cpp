@@ -19,6 +19,7 @@
 #include "coupling/ledger.hpp"
 #include "coupling/material_mass.hpp"
 #include "coupling/melt_section.hpp"
+#include "coupling/melt_surface.hpp"
 #include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
 #include "coupling/solid_on_plate.hpp"
@@ -127,20 +128,27 @@ void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene,
   for (View const view : views) run.output.picture(scene, build.bed, view, layer);
 }
 
-/// The laser: what this very bed absorbs, and what melts.
+/// The laser: what this very bed absorbs, and what melts; the beam is traced on what has melted before it.
 MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellContent const& cells) {
   Case const& checked = run.checked;
   WallTime& wall_time = build.record.wall_time;
-  raytrace::BedScene const scene(build.bed, build.substrate, {0.0, checked.machine.width});
-  Exposure exposure;
-  {
-    Stopwatch const timed(wall_time.rays);
-    exposure = expose_tracks(checked, layer.layer, scene, cells, run.comm, run.show_progress());
-  }
-  picture(run, build, scene, {View::whole_machine, View::oblique, View::from_above}, layer);
-  Stopwatch const timed(wall_time.heat);
+  Exposure exposure = plan_exposure(checked, layer.layer);
+  MeltSurface surface(build.solid, build.bed, build.substrate, cells, checked);
+  picture(run, build, surface.scene(), {View::whole_machine, View::oblique, View::from_above}, layer);
+  double tracing = 0;
+  auto const absorbed_now = [&](std::size_t stretch, std::vector<char> const& melted) {
+    Stopwatch const timed(tracing);
+    if (checked.optics.retrace && !checked.laser.absorptivity) surface.update(melted);
+    return expose_stretch(exposure, stretch, surface.scene(), cells, checked, layer.layer);
+  };
   auto const reported = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
-  thermal::HeatOutcome const heat = thermal::expose(cells, exposure.source, checked, run.comm, reported);
+  thermal::HeatOutcome heat;
+  {
+    Stopwatch const timed(wall_time.heat);
+    heat = thermal::expose(cells, exposure.source, checked, run.comm, reported, absorbed_now);
+  }
+  wall_time.rays += tracing;
+  wall_time.heat -= tracing;
 
   book_light(build.record.ledger, exposure, layer.layer);
   book_heat(build.record.ledger, heat);

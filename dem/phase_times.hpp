@@ -11,6 +11,14 @@ struct PhaseTimes {
   double pairs = 0, walls = 0, motion = 0, neighbours = 0, communication = 0;
 
   double work() const { return pairs + walls + motion + neighbours; }
+  PhaseTimes& operator+=(PhaseTimes const& more) {
+    pairs += more.pairs;
+    walls += more.walls;
+    motion += more.motion;
+    neighbours += more.neighbours;
+    communication += more.communication;
+    return *this;
+  }
   std::map<std::string, double> by_name() const {
     return {{"pairs", pairs},
             {"walls", walls},

@@ -5,14 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "core/case.hpp"
 #include "core/communicator.hpp"
 #include "core/powder_bed.hpp"
 #include "dem/contact_law.hpp"
 #include "dem/decomposition.hpp"
 #include "dem/energy_ledger.hpp"
 #include "dem/grains.hpp"
-#include "dem/mixture.hpp"
+#include "dem/motion.hpp"
 #include "dem/moving_walls.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/pair_contacts.hpp"
@@ -22,6 +21,8 @@
 #include "dem/walls.hpp"
 
 namespace layerloop::dem {
+
+class StepBarrier;
 
 /// What the grains move in.
 struct Rig {
@@ -33,28 +34,6 @@ struct Rig {
   double sink_x = std::numeric_limits<double>::infinity(), sink_z = std::numeric_limits<double>::infinity();
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
 };
-
-/// Settings of the motion; see motion_of() for those of a case.
-struct Motion {
-  ContactLaw between_grains, at_walls;  ///< these three: of all grains, unless there is a mixture
-  ContactSettings contact;              ///< for the form of the laws, and the guard on the duration of a contact
-  double density = 0;                   ///< [kg/m^3]
-  double time_step = 0;                 ///< [s]
-  bool grains_sleep = false;  ///< whether grains that lie still are left alone until something moves near them
-  bool keeps_energy_ledger = false;  ///< see Simulation::energy()
-  Mixture mixture = {};
-
-  /// Of a grain of this PowderBed::material [kg/m^3].
-  double density_of(std::int32_t material) const {
-    return mixture.density.empty() ? density : mixture.density.at(static_cast<std::size_t>(material));
-  }
-};
-
-/// Step: contact.time_step_fraction of the shortest Rayleigh time of the case's grains.
-Motion motion_of(Case const& checked);
-
-/// hertz_contact_time() of grains of this radius, the shortest over the materials [s].
-double shortest_contact_time(Motion const& motion, double radius, double speed);
 
 inline constexpr double fastest_grain = 1000;  ///< [m/s]: nothing in a recoater moves like that
 
@@ -155,6 +134,15 @@ class Simulation {
   static ActionSlots held_by(Share& share);
 
   void run_steps(std::int64_t count);
+  /// One step of share `number`. \param so_far  steps since scatter
+  void step(std::size_t number, std::int64_t so_far, StepBarrier& barrier, PhaseClock& clock, PhaseTimes& times);
+  /// First row of a share that needs not wait for the pairs of the shares before it.
+  std::size_t first_free_row(std::size_t number) const;
+  /// Computes the pairs of a share, and moves its rows from `free` on as soon as theirs are done. \return largest speed
+  /// squared
+  double step_free_rows(std::size_t number, std::size_t free, PhaseClock& clock, PhaseTimes& times);
+  /// Moves the other rows, when all shares have computed their pairs. \return largest speed squared
+  double step_held_rows(std::size_t number, std::size_t free);
   /// Gives the owned rows to this many shares, equal in pairs, and chooses their near pairs.
   void share_out(int shares);
   void choose_near_pairs(Share& share, double half_gap);

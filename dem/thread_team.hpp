@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <utility>
 
 namespace layerloop::dem {
 
@@ -18,28 +19,32 @@ class ThreadTeam {
     if (most_ == 1) return work();
     auto const begin = std::chrono::steady_clock::now();
     work();
+    if (std::exchange(has_just_changed_, false)) return;  // shares were made anew
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     steps_ += steps;
-    if (steps_ >= until_) choose();
+    if (seconds_ >= (settled_ ? between_trials : trial)) choose();
   }
 
  private:
-  static constexpr std::int64_t trial = 300;      // steps; threads that have not paid then stop
-  static constexpr std::int64_t with_one = 8000;  // steps of one thread before all get another try
+  static constexpr double trial = 0.03, between_trials = 2;  // [s]
 
+  /// After a trial of each the faster goes on, until the next trial of the other.
   void choose() {
-    double const pace = seconds_ / static_cast<double>(steps_);
-    if (!many_) pace_of_one_ = pace;
-    many_ = !many_ || pace < pace_of_one_;
-    until_ = many_ ? trial : with_one;
+    (many_ ? pace_of_all_ : pace_of_one_) = seconds_ / static_cast<double>(steps_);
+    bool const other_is_known = !settled_ && (many_ ? pace_of_one_ : pace_of_all_) > 0;
+    bool const all = other_is_known ? pace_of_all_ < pace_of_one_ : !many_;
+    settled_ = other_is_known;
+    has_just_changed_ = all != many_;
+    many_ = all;
+    if (settled_) (many_ ? pace_of_one_ : pace_of_all_) = 0;
     seconds_ = 0;
     steps_ = 0;
   }
 
   int most_ = 1;
-  bool many_ = false;
-  double seconds_ = 0, pace_of_one_ = 0;
-  std::int64_t steps_ = 0, until_ = trial;
+  bool many_ = true, settled_ = false, has_just_changed_ = true;
+  double seconds_ = 0, pace_of_one_ = 0, pace_of_all_ = 0;  // [s], [s a step]
+  std::int64_t steps_ = 0;
 };
 
 }  // namespace layerloop::dem

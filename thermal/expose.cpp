@@ -14,18 +14,19 @@
 namespace layerloop::thermal {
 namespace {
 
+void check(AbsorbedPower const& power, VoxelGrid const& grid) {
+  bool const inside = std::ranges::all_of(power.cell, [&](std::int64_t c) { return c >= 0 && c < grid.size(); });
+  bool const finite = std::ranges::all_of(power.watts, [](double w) { return std::isfinite(w) && w >= 0; });
+  if (!inside || !finite || power.cell.size() != power.watts.size())
+    throw InputError("heat source has a cell outside the heat grid or a power that is negative or not finite");
+}
+
 void check(HeatSource const& source, VoxelGrid const& grid) {
   if (source.time.size() != source.power.size() + 1 || !std::ranges::is_sorted(source.time)) {
     throw InputError(fmt::format("heat source has {} times for {} intervals (one more than intervals, ascending)",
                                  source.time.size(), source.power.size()));
   }
-  for (AbsorbedPower const& power : source.power) {
-    bool const inside = std::ranges::all_of(power.cell, [&](std::int64_t c) { return c >= 0 && c < grid.size(); });
-    bool const finite = std::ranges::all_of(power.watts, [](double w) { return std::isfinite(w) && w >= 0; });
-    if (!inside || !finite || power.cell.size() != power.watts.size()) {
-      throw InputError("heat source has a cell outside the heat grid or a power that is negative or not finite");
-    }
-  }
+  for (AbsorbedPower const& power : source.power) check(power, grid);
 }
 
 /// Highest temperature that the model is trusted with [K]. With evaporation a surface under 2e10 W/m^2 settles 1500 K
@@ -55,21 +56,26 @@ SurfaceSink make_sink(HeatCells const& cells, HeatGrid const& grid, EnthalpyTabl
   return sink;
 }
 
+/// 1: was above the liquidus. \note Collective
+std::vector<char> melted_cells(HeatSystem const& system, HeatCells const& cells, Communicator const& comm) {
+  std::vector<float> const flags(system.melted.begin(), system.melted.end());
+  std::vector<float> const unknowns = gather(cells, system.conduction.box, flags, comm);
+  std::vector<char> melted(unknowns.size(), 0);
+  for (std::size_t c = 0; c < melted.size(); ++c)
+    melted[c] = cells.metal[c] && unknowns[static_cast<std::size_t>(cells.host[c])] > 0;
+  return melted;
+}
+
 MeltRecord make_record(HeatSystem const& system, HeatCells const& cells, Communicator const& comm) {
   MeltRecord record;
   record.grid = cells.grid;
   LocalBox const& box = system.conduction.box;
   record.peak_temperature = to_temperature(cells, system.table, gather(cells, box, system.peak, comm));
   std::vector<float> const time = gather(cells, box, system.time_above_liquidus, comm);
-  std::vector<float> const flags(system.melted.begin(), system.melted.end());
-  std::vector<float> const melted = gather(cells, box, flags, comm);
+  record.melted = melted_cells(system, cells, comm);
   record.time_above_liquidus.assign(time.size(), 0);
-  record.melted.assign(time.size(), 0);
   for (std::size_t c = 0; c < time.size(); ++c) {
-    if (!cells.metal[c]) continue;
-    auto const host = static_cast<std::size_t>(cells.host[c]);
-    record.time_above_liquidus[c] = time[host];
-    record.melted[c] = melted[host] > 0;
+    if (cells.metal[c]) record.time_above_liquidus[c] = time[static_cast<std::size_t>(cells.host[c])];
   }
   return record;
 }
@@ -78,7 +84,7 @@ MeltRecord make_record(HeatSystem const& system, HeatCells const& cells, Communi
 
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
                    HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
-                   Report report) {
+                   Report report, AbsorbedNow const& absorbed_now) {
   check(source, content.grid);
   HeatCells const cells = make_heat_cells(content, side_y);
   Material metal = material;
@@ -100,10 +106,12 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   for (std::size_t i = 0; i < source.power.size(); ++i) {
     double const begin = source.time[i], duration = source.time[i + 1] - begin;
     if (duration == 0) continue;
-    if (source.power[i].cell.empty()) {
+    AbsorbedPower const now = absorbed_now ? absorbed_now(i, melted_cells(system, cells, comm)) : source.power[i];
+    check(now, content.grid);
+    if (now.cell.empty()) {
       exposure.rest(duration, begin);
     } else {
-      exposure.heat(source.power[i], duration, begin);
+      exposure.heat(now, duration, begin);
     }
     progress.update(source.time[i + 1] - source.time.front());
   }
@@ -119,11 +127,11 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
 }
 
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
-                   Report report) {
+                   Report report, AbsorbedNow const& absorbed_now) {
   double const span = content.grid.cell * content.grid.n[1];
   bool const periodic = std::abs(span - settings.machine.width) < 0.01 * content.grid.cell;
   return expose(content, source, settings.material, settings.heat, settings.effects,
-                periodic ? SideY::periodic : SideY::far_field, comm, report);
+                periodic ? SideY::periodic : SideY::far_field, comm, report, absorbed_now);
 }
 
 }  // namespace layerloop::thermal

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "core/case.hpp"
 #include "core/cell_content.hpp"
@@ -29,6 +31,10 @@ struct HeatOutcome {
 
 enum class Report { progress, silent };
 
+/// What the cells absorb in a stretch of the source, asked for when it begins. `melted`: 1 for cells that have been
+/// above the liquidus so far, shape grid.size(). \note Collective
+using AbsorbedNow = std::function<AbsorbedPower(std::size_t stretch, std::vector<char> const& melted)>;
+
 /// Heats the cells with the source, starting from ambient, until the source has ended and nothing is above the solidus.
 ///
 /// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `latent_heat`, `variable_conductivity`,
@@ -43,10 +49,11 @@ enum class Report { progress, silent };
 /// implicit ones agree to the solver's tolerance, 1e-12.
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
                    HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
-                   Report report);
+                   Report report, AbsorbedNow const& absorbed_now = {});
 
-/// The same from a case: y periodic when the grid spans the machine's width, far field otherwise.
+/// The same from a case: y periodic when the grid spans the machine's width, far field otherwise. \param absorbed_now
+/// where given, replaces the powers of the source, of which then only times and tracks count
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
-                   Report report);
+                   Report report, AbsorbedNow const& absorbed_now = {});
 
 }  // namespace layerloop::thermal
