@@ -122,10 +122,9 @@ void sort_by_place(RayTally const& tally, Places const& places, Absorption& resu
   }
   result.outside_map = tally.outside_map.value() / rays;
 
-  for (std::size_t c = 0; c < tally.cell.size(); ++c) {
-    if (tally.cell[c].value() == 0) continue;
-    result.cell.push_back(static_cast<std::int64_t>(c));
-    result.cell_share.push_back(tally.cell[c].value() / rays);
+  for (auto const& [cell, sum] : tally.cells()) {
+    result.cell.push_back(cell);
+    result.cell_share.push_back(sum / rays);
   }
   result.outside_grid = tally.outside_grid.value() / rays;
 }
@@ -138,7 +137,7 @@ double ledger_error(Absorption const& result, AbsorptionSettings const& settings
     sum.add(rest);
     for (double const part : parts) sum.add(part);
     double const error = std::abs(sum.value() - total);
-    worst = error <= worst ? worst : error;  // also when it is not a number
+    if (std::isnan(error) || error > worst) worst = error;
   };
   for (SetAbsorption const& set : result.sets) {
     compare(1, std::array{set.absorptivity, set.escaped, set.residual}, 0);

@@ -57,15 +57,32 @@ RayTally::RayTally(TallyLayout const& layout, Places const& places, std::size_t 
       map(places.map.nx > 0 ? replicate.size() : 0,
           std::vector<CompensatedSum>(static_cast<std::size_t>(std::int64_t{places.map.nx} * places.map.ny))),
       grain(places.grains ? grains : 0),
-      cell(places.grid ? static_cast<std::size_t>(places.grid->size()) : 0) {}
+      cell_place_(places.grid ? static_cast<std::size_t>(places.grid->size()) : 0) {}
 
 void RayTally::add(BlockTally const& block, std::size_t r) {
   for (std::size_t i = 0; i < block.sums.size(); ++i) replicate[r][i].add(block.sums[i]);
   for (Deposit const& d : block.deposits) {
     if (!grain.empty() && d.row >= 0) grain[static_cast<std::size_t>(d.row)].add(d.share);
     if (!map.empty()) (d.pixel < 0 ? outside_map : map[r][static_cast<std::size_t>(d.pixel)]).add(d.share);
-    if (!cell.empty()) (d.cell < 0 ? outside_grid : cell[static_cast<std::size_t>(d.cell)]).add(d.share);
+    if (cell_place_.empty()) continue;
+    if (d.cell < 0) {
+      outside_grid.add(d.share);
+      continue;
+    }
+    std::int32_t& place = cell_place_[static_cast<std::size_t>(d.cell)];
+    if (place == 0) {
+      cell_sums_.push_back({d.cell, {}});
+      place = static_cast<std::int32_t>(cell_sums_.size());
+    }
+    cell_sums_[static_cast<std::size_t>(place - 1)].sum.add(d.share);
   }
+}
+
+std::vector<std::pair<std::int64_t, double>> RayTally::cells() const {
+  std::vector<std::pair<std::int64_t, double>> cells;
+  for (CellSum const& lit : cell_sums_) cells.emplace_back(lit.cell, lit.sum.value());
+  std::ranges::sort(cells);
+  return cells;
 }
 
 RayTally::Estimate RayTally::estimate(std::size_t figure) const {

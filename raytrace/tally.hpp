@@ -1,6 +1,6 @@
 #pragma once
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/area_map.hpp"
@@ -26,7 +26,7 @@ struct TallyLayout {
   std::size_t size() const { return depth(depth_bins); }
 };
 
-/// Where absorbed power is sorted by place. Rows of grains are always asked for where `grains` is.
+/// By which places absorbed power is sorted.
 struct Places {
   bool grains = false;
   VoxelGrid const* grid = nullptr;  ///< cells, or none
@@ -63,9 +63,12 @@ struct RayTally {
   TallyLayout layout;
   std::vector<std::vector<CompensatedSum>> replicate;  ///< rows of sums
   std::vector<std::vector<CompensatedSum>> map;        ///< pixels, by replicate
-  std::vector<CompensatedSum> grain, cell;
+  std::vector<CompensatedSum> grain;
   CompensatedSum outside_grid, outside_map;
   std::int64_t replicate_rays = 0;  ///< so far, in each
+
+  /// Cells that absorb, ascending, and what they do.
+  std::vector<std::pair<std::int64_t, double>> cells() const;
 
   /// A figure as share of what fell in, with its standard error from the scatter of the replicates.
   struct Estimate {
@@ -75,6 +78,14 @@ struct RayTally {
   Estimate absorptivity(std::size_t set) const;
   Estimate pixel(std::size_t index) const;
   double rays() const { return static_cast<double>(replicate_rays) * static_cast<double>(replicate.size()); }
+
+ private:
+  struct CellSum {
+    std::int64_t cell;
+    CompensatedSum sum;
+  };
+  std::vector<CellSum> cell_sums_;        // of the cells that absorb, as they come
+  std::vector<std::int32_t> cell_place_;  // by cell: 1 + index into them; few of many cells are lit
 };
 
 }  // namespace layerloop::raytrace

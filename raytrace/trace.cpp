@@ -15,10 +15,9 @@ AbsorbedPower watts_of(RayTally const& tally, double incident) {
   AbsorbedPower power;
   power.incident = incident;
   power.rays = static_cast<std::int64_t>(tally.rays());
-  for (std::size_t c = 0; c < tally.cell.size(); ++c) {
-    if (tally.cell[c].value() == 0) continue;
-    power.cell.push_back(static_cast<std::int64_t>(c));
-    power.watts.push_back(watts * tally.cell[c].value());
+  for (auto const& [cell, sum] : tally.cells()) {
+    power.cell.push_back(cell);
+    power.watts.push_back(watts * sum);
   }
   power.outside_grid = watts * tally.outside_grid.value();
 

@@ -3,7 +3,7 @@
 #include "raytrace/fresnel.hpp"
 #include "scenes.hpp"
 
-// Absorptivity of shapes whose answer is known in closed form, or from an independent tracer run to high precision.
+// Shapes whose absorptivity is known in closed form, through the tracer of the layer loop.
 namespace layerloop::raytrace {
 namespace {
 
@@ -50,51 +50,6 @@ TEST(Lattices, BlackLayersLetTheGapsThrough) {
   AbsorbedPower const deep = trace_uniform(BedScene(cubic.bed, {}, cubic.period), black, 200000);
   EXPECT_LT(deep.standard_error, 2e-4);
   EXPECT_NEAR(1 - deep.absorptivity, .2146018, 3 * deep.standard_error);
-}
-
-TEST(Lattices, RightAngledGrooveTellsTrackedFromAveragedPolarisation) {
-  // Two hits at 45 degrees with the same s and p directions: 1 - (Rs^2 + Rp^2)/2 tracked, 1 - ((Rs + Rp)/2)^2 averaged.
-  TriangleSurface groove;
-  groove.vertices = {{-1, -1, 1}, {0, -1, 0}, {1, -1, 1}, {-1, 2, 1}, {0, 2, 0}, {1, 2, 1}};
-  groove.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
-  BedScene const scene({}, groove, {0, 1});
-  Beam const beam{.centre = {0, 0.5, 0}, .power = 1, .profile = BeamProfile::uniform, .size_x = 1.9, .size_y = 1};
-  std::array const metals{stainless_steel};
-  auto const absorptivity = [&](Polarisation polarisation) {
-    return trace(scene, beam, metals, 0, one_cell(scene), {.rays = 2000, .polarisation = polarisation}).absorptivity;
-  };
-  EXPECT_NEAR(absorptivity(Polarisation::tracked), .568139, 1e-6);
-  EXPECT_NEAR(absorptivity(Polarisation::averaged), .577152, 1e-6);
-}
-
-// The bars below were computed with another tracer (built-in Embree spheres, random rays, 4e5 paths, se .0002 to
-// .0005).
-
-TEST(Lattices, HexagonalLayersOnAFloor) {
-  struct {
-    int layers;
-    std::complex<double> metal;
-    double expected;
-  } const cases[] = {{1, stainless_steel, .5589}, {2, stainless_steel, .5948}, {1, silver, .0875}, {2, silver, .1334}};
-  for (auto const& c : cases) {
-    Lattice const lattice = hexagonal_layers(c.layers);
-    BedScene const scene(lattice.bed, flat_floor(-3, 4, -3, 5, 0), lattice.period);
-    AbsorbedPower const power = trace_uniform(scene, c.metal, 60000);
-    EXPECT_LT(power.standard_error, 1e-3);
-    EXPECT_NEAR(power.absorptivity, c.expected, 3 * power.standard_error + .0015) << c.layers << " layers";
-  }
-}
-
-TEST(Lattices, HexagonalLayersWithoutFloor) {
-  Lattice const one = hexagonal_layers(1), two = hexagonal_layers(2);
-  EXPECT_NEAR(trace_uniform(BedScene(one.bed, {}, one.period), stainless_steel, 60000).absorptivity, .4892, .0025);
-  EXPECT_NEAR(trace_uniform(BedScene(two.bed, {}, two.period), stainless_steel, 60000).absorptivity, .5761, .0025);
-}
-
-TEST(Lattices, SixteenFaceCentredCubicLayers) {
-  Lattice const lattice = face_centred_cubic(16);
-  AbsorbedPower const power = trace_uniform(BedScene(lattice.bed, {}, lattice.period), stainless_steel, 60000);
-  EXPECT_NEAR(power.absorptivity, .61876, 3 * std::hypot(power.standard_error, .00047));
 }
 
 }  // namespace
