@@ -100,9 +100,8 @@ struct BedScene::Data {
 
   void add_spheres(PowderBed const& bed);
   LocalRay local(Ray const& ray) const;
-  Hit grain(SphereHit const& hit, LocalRay const& ray) const;
-  Hit embree_hit(LocalRay const& ray, double limit) const;
-  Hit embree_hit_around(LocalRay ray, double limit) const;
+  Hit global(LocalHit const& hit) const;
+  LocalHit embree_hit_around(LocalRay ray, double limit) const;
 };
 
 void BedScene::Data::add_spheres(PowderBed const& bed) {
@@ -154,28 +153,15 @@ LocalRay BedScene::Data::local(Ray const& ray) const {
   return {origin.x(), origin.y(), origin.z(), ray.direction.x(), ray.direction.y(), ray.direction.z()};
 }
 
-Hit BedScene::Data::grain(SphereHit const& hit, LocalRay const& ray) const {
-  Sphere const& sphere = spheres[static_cast<std::size_t>(hit.sphere)];
-  Vec3 const point = hit.origin + hit.distance * Vec3(ray.dx, ray.dy, ray.dz);
-  return {.target = Target::grain,
-          .row = owner[static_cast<std::size_t>(hit.sphere)],
-          .point = point + middle,
-          .normal = (point - Vec3(sphere.x, sphere.y, sphere.z)).normalized()};
-}
-
-Hit BedScene::Data::embree_hit(LocalRay const& ray, double limit) const {
-  EmbreeHit const hit = embree->first_hit(ray, limit);
-  Vec3 const origin(ray.ox, ray.oy, ray.oz);
-  if (hit.sphere >= 0) return grain({.distance = hit.distance, .sphere = hit.sphere, .origin = origin}, ray);
-  if (hit.triangle < 0) return {};
-  return {.target = Target::substrate,
-          .row = hit.triangle,
-          .point = origin + hit.distance * Vec3(ray.dx, ray.dy, ray.dz) + middle,
-          .normal = embree->normal(hit.triangle)};
+Hit BedScene::Data::global(LocalHit const& hit) const {
+  if (hit.sphere >= 0)
+    return {Target::grain, owner[static_cast<std::size_t>(hit.sphere)], hit.point + middle, hit.normal};
+  if (hit.triangle >= 0) return {Target::substrate, hit.triangle, hit.point + middle, hit.normal};
+  return {.target = hit.undecided ? Target::undecided : Target::nothing};
 }
 
 /// Tile by tile.
-Hit BedScene::Data::embree_hit_around(LocalRay ray, double limit) const {
+LocalHit BedScene::Data::embree_hit_around(LocalRay ray, double limit) const {
   std::array const direction{ray.dx, ray.dy, ray.dz};
   std::array<double*, 3> const at{&ray.ox, &ray.oy, &ray.oz};
   std::array<double, 2> from;  // lower corner of the tile
@@ -199,33 +185,34 @@ Hit BedScene::Data::embree_hit_around(LocalRay ray, double limit) const {
       double const to_edge = std::max((edge - *at[axis]) / direction[axis], 0.0);
       if (to_edge < distance) distance = to_edge, side = axis;
     }
-    Hit const hit = embree_hit(ray, distance);
-    if (hit.target != Target::nothing || side == 2) return hit;
+    LocalHit const hit = embree->first_hit(ray, distance);
+    if (hit.sphere >= 0 || hit.triangle >= 0 || side == 2) return hit;
 
     for (std::size_t axis = 0; axis < 3; ++axis) *at[axis] += distance * direction[axis];
     *at[side] = from[side] + (direction[side] > 0 ? 0.0 : period[side]);
     limit -= distance;
   }
-  return {.target = Target::undecided};
+  LocalHit lost;
+  lost.undecided = true;
+  return lost;
 }
 
 Hit BedScene::first_hit(Ray const& ray) const {
   LocalRay const local = data_->local(ray);
-  if (!data_->grid) return data_->embree_hit_around(local, infinity);
-  SphereHit const sphere = data_->grid->first_hit(local);
+  if (!data_->grid) return data_->global(data_->embree_hit_around(local, infinity));
+  LocalHit const hit = data_->grid->first_hit(local);
   if (data_->embree) {
-    Hit const triangle = data_->embree_hit_around(local, sphere.distance);
-    if (triangle.target == Target::substrate) return triangle;
+    LocalHit const triangle = data_->embree_hit_around(local, hit.distance);
+    if (triangle.triangle >= 0) return data_->global(triangle);
   }
-  if (sphere.sphere >= 0) return data_->grain(sphere, local);
-  return {.target = sphere.undecided ? Target::undecided : Target::nothing};
+  return data_->global(hit);
 }
 
 Hit BedScene::first_hit_in_tile(Ray const& ray) const {
   LocalRay const local = data_->local(ray);
-  SphereHit const sphere = data_->grid ? data_->grid->first_hit_in_tile(local, infinity) : SphereHit{};
-  Hit const other = data_->embree ? data_->embree_hit(local, sphere.distance) : Hit{};
-  return other.target != Target::nothing || sphere.sphere < 0 ? other : data_->grain(sphere, local);
+  LocalHit const hit = data_->grid ? data_->grid->first_hit_in_tile(local, infinity) : LocalHit{};
+  LocalHit const other = data_->embree ? data_->embree->first_hit(local, hit.distance) : LocalHit{};
+  return data_->global(other.sphere >= 0 || other.triangle >= 0 ? other : hit);
 }
 
 bool BedScene::is_blocked(Ray const& ray, double distance) const {

@@ -133,7 +133,7 @@ EmbreeScene::EmbreeScene(std::span<Sphere const> spheres, TriangleSurface const&
   }
 }
 
-EmbreeHit EmbreeScene::first_hit(LocalRay const& ray, double limit) const {
+LocalHit EmbreeScene::first_hit(LocalRay const& ray, double limit) const {
   // Embree stops the program when a ray is not a number: it meets nothing.
   if (!std::isfinite(ray.ox + ray.oy + ray.oz + ray.dx + ray.dy + ray.dz)) return {};
   Query query;
@@ -147,14 +147,23 @@ EmbreeHit EmbreeScene::first_hit(LocalRay const& ray, double limit) const {
   rtcIntersect1(scene_.get(), &query.context, &rayhit);
 
   if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  auto const primitive = static_cast<std::int32_t>(rayhit.hit.primID);
-  if (rayhit.hit.geomID == sphere_geometry_) return {.distance = query.distance, .sphere = primitive};
-
-  Vec3 const direction(ray.dx, ray.dy, ray.dz), &normal = normals_[rayhit.hit.primID];
-  double const approach = -direction.dot(normal);
-  double const height = (Vec3(ray.ox, ray.oy, ray.oz) - corners_[rayhit.hit.primID]).dot(normal);
-  double const distance = approach > 1e-9 ? height / approach : static_cast<double>(rayhit.ray.tfar);
-  return {.distance = std::max(distance, 0.0), .triangle = primitive};
+  LocalHit hit;
+  Vec3 const origin(ray.ox, ray.oy, ray.oz), direction(ray.dx, ray.dy, ray.dz);
+  unsigned const primitive = rayhit.hit.primID;
+  if (rayhit.hit.geomID == sphere_geometry_) {
+    Sphere const& sphere = spheres_[primitive];
+    hit.sphere = static_cast<std::int32_t>(primitive);
+    hit.distance = query.distance;
+    hit.point = origin + hit.distance * direction;
+    hit.normal = unit((1 / sphere.radius) * (hit.point - Vec3(sphere.x, sphere.y, sphere.z)));
+  } else {
+    hit.triangle = static_cast<std::int32_t>(primitive);
+    hit.normal = normals_[primitive];
+    double const approach = -direction.dot(hit.normal), height = (origin - corners_[primitive]).dot(hit.normal);
+    hit.distance = std::max(approach > 1e-9 ? height / approach : static_cast<double>(rayhit.ray.tfar), 0.0);
+    hit.point = origin + hit.distance * direction;
+  }
+  return hit;
 }
 
 bool EmbreeScene::is_blocked(LocalRay const& ray, double limit) const {

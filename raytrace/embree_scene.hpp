@@ -13,12 +13,6 @@ struct RTCDeviceTy;
 
 namespace layerloop::raytrace {
 
-/// What Embree finds first.
-struct EmbreeHit {
-  double distance = infinity;  ///< [m]
-  std::int32_t sphere = -1, triangle = -1;
-};
-
 /// Spheres and triangles in Embree's hierarchy. It finds candidates in single precision, in coordinates about the
 /// middle of the scene; spheres are then intersected in double precision inside the traversal, triangles once their
 /// plane is known. Both are seen from outside only. Queries are const and safe from many threads.
@@ -29,9 +23,8 @@ class EmbreeScene {
   /// \param middle     of the scene, in machine coordinates
   EmbreeScene(std::span<Sphere const> spheres, TriangleSurface const& triangles, Vec3 const& middle);
 
-  EmbreeHit first_hit(LocalRay const& ray, double limit) const;
+  LocalHit first_hit(LocalRay const& ray, double limit) const;
   bool is_blocked(LocalRay const& ray, double limit) const;
-  Vec3 const& normal(std::int32_t triangle) const { return normals_[static_cast<std::size_t>(triangle)]; }
 
  private:
   struct Release {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +25,22 @@ inline Numbers root(Numbers const& value) {
 #endif
 }
 
-inline bool any(Flags const& flags) {
+/// Bit l for lane l.
+inline unsigned bits(Flags const& flags) {
 #if defined(__AVX512F__)
-  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(flags), reinterpret_cast<__m512i>(flags)) != 0;
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(flags), reinterpret_cast<__m512i>(flags));
 #else
-  std::int64_t found = 0;
-  for (int l = 0; l < 8; ++l) found |= flags[l];
-  return found != 0;
+  unsigned found = 0;
+  for (int l = 0; l < 8; ++l) found |= static_cast<unsigned>(flags[l] != 0) << l;
+  return found;
 #endif
+}
+
+inline double least(Numbers const& values) {
+  auto const smaller = [](Numbers const& a, Numbers const& b) { return a < b ? a : b; };
+  Numbers result = smaller(values, __builtin_shuffle(values, Flags{4, 5, 6, 7, 0, 1, 2, 3}));
+  result = smaller(result, __builtin_shuffle(result, Flags{2, 3, 0, 1, 6, 7, 4, 5}));
+  return std::min(result[0], result[1]);
 }
 
 }  // namespace layerloop::raytrace

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "raytrace/sphere.hpp"
 
 namespace layerloop::raytrace {
 namespace {
@@ -62,7 +63,7 @@ class Path {
           hit.target == Target::grain ? problem_.scene.material(hit.row) : problem_.substrate_material);
       Vec3 const in = ray.direction;
       ray.origin = hit.point;
-      ray.direction = (in - 2 * in.dot(hit.normal) * hit.normal).normalized();
+      ray.direction = unit(in - 2 * in.dot(hit.normal) * hit.normal);
       light_.reflect({material, in, hit.normal, ray.direction});
       deposit(hit, material, tally);
       if (problem_.diffuse_share > 0) {

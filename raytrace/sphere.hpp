@@ -1,6 +1,9 @@
 #pragma once
 #include <cmath>
+#include <cstdint>
 #include <limits>
+
+#include "core/vec3.hpp"
 
 namespace layerloop::raytrace {
 
@@ -15,6 +18,19 @@ struct alignas(32) Sphere {
 struct LocalRay {
   double ox, oy, oz, dx, dy, dz;
 };
+
+/// The surface that a ray meets first, in the same coordinates.
+struct LocalHit {
+  double distance = infinity;               ///< along the ray, over all tiles that it crossed [m]
+  std::int32_t sphere = -1, triangle = -1;  ///< at most one of them is there
+  bool undecided = false;                   ///< crossed the tile too often
+  Vec3 point = Vec3::Zero();                ///< seen from the tile in which it lies
+  Vec3 normal = Vec3::Zero();               ///< outward, unit length
+};
+
+/// A vector of unit length up to rounding, made so to the last digit: one step of Newton's in place of a root and a
+/// quotient, which the next flight would have to wait for.
+inline Vec3 unit(Vec3 const& almost) { return (1.5 - 0.5 * almost.squaredNorm()) * almost; }
 
 inline double root(double value) { return std::sqrt(value); }
 

@@ -1,6 +1,7 @@
 #include "raytrace/sphere_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace layerloop::raytrace {
 namespace {
@@ -129,7 +130,7 @@ SphereGrid::SphereGrid(std::span<Sphere const> spheres, std::array<double, 2> ti
 
 /// `around`: through the periodic sides.
 template <bool around>
-SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
+LocalHit SphereGrid::walk(LocalRay ray, double limit) const {
   std::array<double*, 3> const origin{&ray.ox, &ray.oy, &ray.oz};
   std::array const direction{ray.dx, ray.dy, ray.dz}, inverse{1 / ray.dx, 1 / ray.dy, 1 / ray.dz};
   double enter = 0, leave = limit;
@@ -170,7 +171,7 @@ SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
   Flags place{};  // lane of the packs
   Flags const lane{0, 1, 2, 3, 4, 5, 6, 7};
   int crossings = 0;
-  SphereHit hit;
+  LocalHit hit;
   for (;;) {
     std::size_t const here = static_cast<std::size_t>(cell[0]) +
                              static_cast<std::size_t>(axis_[0].cells) *
@@ -185,7 +186,7 @@ SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
       place = nearer ? lane + static_cast<std::int64_t>(p * lanes_at_once) : place;
     }
     std::size_t const a = exit[0] < exit[1] ? (exit[0] < exit[2] ? 0 : 2) : (exit[1] < exit[2] ? 1 : 2);
-    if (any(nearest <= exit[a]) || exit[a] >= leave) break;
+    if (bits(nearest <= exit[a]) || exit[a] >= leave) break;
     cell[a] += step[a];
     exit[a] += between[a];
     if (cell[a] != end[a]) continue;
@@ -199,19 +200,22 @@ SphereHit SphereGrid::walk(LocalRay ray, double limit) const {
     *origin[a] -= step[a] * axis_[a].period;
     nearest = infinity + Numbers{};
   }
-  for (std::size_t l = 0; l < lanes_at_once; ++l) {
-    if (!(nearest[l] < hit.distance)) continue;
-    hit.distance = nearest[l];
-    hit.sphere = sphere_[static_cast<std::size_t>(place[l])];
-  }
-  if (!(hit.distance <= limit)) return {};
-  hit.origin = {ray.ox, ray.oy, ray.oz};
+  double const distance = least(nearest);
+  if (!(distance <= limit) || distance == infinity) return hit;
+  auto const lane_met = static_cast<std::size_t>(std::countr_zero(bits(nearest == distance)));
+  auto const at = static_cast<std::size_t>(place[lane_met]);
+  Pack const& pack = packs_[at / lanes_at_once];
+  std::size_t const l = at % lanes_at_once;
+  hit.distance = distance;
+  hit.sphere = sphere_[at];
+  hit.point = Vec3(ray.ox, ray.oy, ray.oz) + distance * Vec3(ray.dx, ray.dy, ray.dz);
+  hit.normal = unit((1 / pack.radius[l]) * (hit.point - Vec3(pack.x[l], pack.y[l], pack.z[l])));
   return hit;
 }
 
-SphereHit SphereGrid::first_hit(LocalRay const& ray) const { return walk<true>(ray, infinity); }
+LocalHit SphereGrid::first_hit(LocalRay const& ray) const { return walk<true>(ray, infinity); }
 
-SphereHit SphereGrid::first_hit_in_tile(LocalRay const& ray, double limit) const { return walk<false>(ray, limit); }
+LocalHit SphereGrid::first_hit_in_tile(LocalRay const& ray, double limit) const { return walk<false>(ray, limit); }
 
 std::size_t SphereGrid::bytes() const {
   return first_pack_.size() * sizeof(std::uint32_t) + packs_.size() * sizeof(Pack) +

@@ -11,14 +11,6 @@
 
 namespace layerloop::raytrace {
 
-/// Where a ray enters the first sphere that it meets.
-struct SphereHit {
-  double distance = infinity;  ///< along the ray, over all tiles [m]
-  std::int32_t sphere = -1;
-  Vec3 origin = Vec3::Zero();  ///< of the ray as seen from the tile in which it hits
-  bool undecided = false;      ///< crossed the tile too often
-};
-
 /// Spheres sorted into the cells of a uniform grid, each cell with a copy of all that reach into it, eight to a pack. A
 /// ray walks from cell to cell (Amanatides & Woo, Eurographics 1987, 3) and stops in the first one that it hits
 /// something in. In a bed of similar grains the free path is about one diameter, so that it sees two or three cells and
@@ -31,9 +23,9 @@ class SphereGrid {
   SphereGrid(std::span<Sphere const> spheres, std::array<double, 2> tile, std::array<double, 2> period);
 
   /// Goes round through the periodic sides.
-  SphereHit first_hit(LocalRay const& ray) const;
+  LocalHit first_hit(LocalRay const& ray) const;
   /// The spheres and copies as they stand, up to the distance `limit`.
-  SphereHit first_hit_in_tile(LocalRay const& ray, double limit) const;
+  LocalHit first_hit_in_tile(LocalRay const& ray, double limit) const;
 
   /// How many spheres share the cell of a copy, on average over the copies: what a ray must look at where the powder
   /// is.
@@ -57,7 +49,7 @@ class SphereGrid {
   template <class Visit>
   void visit_cells(Sphere const& sphere, Visit&& visit) const;
   template <bool around>
-  SphereHit walk(LocalRay ray, double limit) const;
+  LocalHit walk(LocalRay ray, double limit) const;
 
   std::array<Axis, 3> axis_;
   std::vector<std::uint32_t> first_pack_;  ///< by cell, and the end
