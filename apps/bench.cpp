@@ -44,12 +44,14 @@ void bench_dem(BenchOptions const& options) {
 
 void bench_rays(BenchOptions const& options) {
   using raytrace::BenchLight;
+  omp_set_num_threads(1);
   raytrace::RayBench const r = raytrace::bench_rays(read_bed(options.packing), options.rays,
                                                     options.uniform ? BenchLight::uniform : BenchLight::spot);
   nlohmann::ordered_json const json{
       {"particles", r.particles},
       {"paths", r.paths},
       {"secondary_rays", r.secondary_rays},
+      {"hit_share", r.hit_share},
       {"light", options.uniform ? "uniform" : "spot"},
       {"backend", r.grid_chosen ? "grid" : "embree"},
       {"rays_per_second", r.tracer.median},

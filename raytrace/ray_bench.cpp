@@ -1,7 +1,6 @@
 #include "raytrace/ray_bench.hpp"
 
 #include <embree3/rtcore.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <ctime>
@@ -220,11 +219,45 @@ void find_time_to_standard_error(BedScene const& scene, RayBench& result) {
   result.reached_absorptivity = found.sets[0].absorptivity;
 }
 
+struct Contenders {
+  BedScene const &embree, &grid, &chosen;
+  BuiltInSpheres const& built_in;
+};
+
+/// All contenders in turn, so that what else the machine does meets them alike.
+void time_rounds(Contenders const& of, Flights const& flights, Beam const& beam, TraceSettings const& settings,
+                 RayBench& result) {
+  std::vector<RTCRayHit> prepared;
+  for (Ray const& ray : flights.secondary) prepared.push_back(of.built_in.prepared(ray));
+  VoxelGrid const cells = cells_around(of.chosen);
+  std::int64_t found = 0;
+  auto const answer = [&](BedScene const& scene) {
+    for (Ray const& ray : flights.secondary) found += scene.first_hit(ray).target == Target::grain;
+  };
+  std::vector<double> built_in, embree, grid, tracer;  // [s]
+  for (int round = 0; round < rounds; ++round) {
+    built_in.push_back(timed([&] {
+      for (RTCRayHit const& ray : prepared) {
+        RTCRayHit copy = ray;
+        of.built_in.intersect(copy);
+      }
+    }));
+    embree.push_back(timed([&] { answer(of.embree); }));
+    grid.push_back(timed([&] { answer(of.grid); }));
+    tracer.push_back(timed([&] { trace(of.chosen, beam, std::array{stainless_steel}, 0, cells, settings); }));
+  }
+  std::size_t const secondary = flights.secondary.size();
+  result.hit_share = static_cast<double>(found) / static_cast<double>(2 * rounds * secondary);
+  result.built_in = rate(built_in, secondary);
+  result.embree = rate(embree, secondary);
+  result.grid = rate(grid, secondary);
+  result.tracer = rate(tracer, secondary + flights.first.size());
+}
+
 }  // namespace
 
 RayBench bench_rays(BedFile const& file, std::int64_t rays, BenchLight light) {
   if (file.bed.size() == 0) throw InputError("the bed is empty (nothing to trace): give one with grains");
-  omp_set_num_threads(1);
   PowderBed bed = file.bed;
   std::fill(bed.material.begin(), bed.material.end(), 0);
   std::array const period{file.periodic_x.value_or(0), file.periodic_y.value_or(0)};
@@ -248,35 +281,12 @@ RayBench bench_rays(BedFile const& file, std::int64_t rays, BenchLight light) {
   result.particles = static_cast<std::int64_t>(bed.size());
   result.paths = settings.rays;
   result.secondary_rays = static_cast<std::int64_t>(flights.secondary.size());
+  if (flights.secondary.empty())
+    throw InputError("no ray met a grain (nothing to time): is the bed where the light is?");
   compare_hits(*grid, *embree, flights.first, result);
   compare_hits(*grid, *embree, flights.secondary, result);
 
-  std::vector<RTCRayHit> prepared;
-  for (Ray const& ray : flights.secondary) prepared.push_back(built_in->prepared(ray));
-  VoxelGrid const cells = cells_around(chosen);
-  std::int64_t found = 0;
-  std::vector<double> built_in_seconds, embree_seconds, grid_seconds, tracer_seconds;
-  auto const answer = [&](BedScene const& scene) {
-    for (Ray const& ray : flights.secondary) found += scene.first_hit(ray).target == Target::grain;
-  };
-  for (int round = 0; round < rounds; ++round) {
-    built_in_seconds.push_back(timed([&] {
-      for (RTCRayHit const& ray : prepared) {
-        RTCRayHit copy = ray;
-        built_in->intersect(copy);
-        found += copy.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-      }
-    }));
-    embree_seconds.push_back(timed([&] { answer(*embree); }));
-    grid_seconds.push_back(timed([&] { answer(*grid); }));
-    tracer_seconds.push_back(timed([&] { trace(chosen, beam, std::array{stainless_steel}, 0, cells, settings); }));
-  }
-  if (found == 0) throw PhysicsError("no ray met a grain (the bed is not where the light is): check its coordinates");
-  std::size_t const secondary = flights.secondary.size();
-  result.built_in = rate(built_in_seconds, secondary);
-  result.embree = rate(embree_seconds, secondary);
-  result.grid = rate(grid_seconds, secondary);
-  result.tracer = rate(tracer_seconds, secondary + flights.first.size());
+  time_rounds({*embree, *grid, chosen, *built_in}, flights, beam, settings, result);
   find_time_to_standard_error(chosen, result);
   return result;
 }

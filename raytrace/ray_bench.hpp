@@ -16,10 +16,11 @@ struct Rate {
   double median = 0, best = 0;
 };
 
-/// How fast the rays of one bed are traced; processor time of one thread.
+/// How fast the rays of one bed are traced, by processor time.
 struct RayBench {
   std::int64_t particles = 0, paths = 0;
   std::int64_t secondary_rays = 0;  ///< all flights after the first of each path, in path order
+  double hit_share = 0;             ///< of these that meet a grain again
   Rate built_in;  ///< raw rtcIntersect1 on Embree's own spheres (single precision, back faces filtered), secondary rays
   Rate embree;    ///< BedScene on Embree, secondary rays
   Rate grid;      ///< BedScene on the grid, secondary rays
@@ -36,7 +37,7 @@ struct RayBench {
 
 /// Records the flights of a real trace (stainless steel, 3.27 + 4.48i) and lets every contender answer them in turn.
 /// The bed lies on a flat plate of the same metal where the file gives a floor. \param rays  secondary rays, about
-/// \throws InputError the bed is empty
+/// \pre OpenMP uses one thread \throws InputError the bed is empty
 RayBench bench_rays(BedFile const& file, std::int64_t rays, BenchLight light);
 
 }  // namespace layerloop::raytrace

@@ -21,7 +21,7 @@ struct LocalRay {
 
 /// The surface that a ray meets first, in the same coordinates.
 struct LocalHit {
-  double distance = infinity;               ///< along the ray, over all tiles that it crossed [m]
+  double distance = infinity;               ///< along the ray [m]
   std::int32_t sphere = -1, triangle = -1;  ///< at most one of them is there
   bool undecided = false;                   ///< crossed the tile too often
   Vec3 point = Vec3::Zero();                ///< seen from the tile in which it lies

@@ -81,11 +81,7 @@ void SphereGrid::visit_cells(Sphere const& sphere, Visit&& visit) const {
         Reach const x = reach_of(0, i);
         bool const outside = x.near + y.near + z.near > outer * outer;
         bool const within = inner > 0 && x.far + y.far + z.far < inner * inner;  // no ray comes there
-        if (!outside && !within)
-          visit(static_cast<std::size_t>(i) +
-                static_cast<std::size_t>(axis_[0].cells) *
-                    (static_cast<std::size_t>(j) +
-                     static_cast<std::size_t>(axis_[1].cells) * static_cast<std::size_t>(k)));
+        if (!outside && !within) visit(index(i, j, k));
       }
     }
   }
@@ -128,28 +124,37 @@ SphereGrid::SphereGrid(std::span<Sphere const> spheres, std::array<double, 2> ti
   }
 }
 
-/// `around`: through the periodic sides.
+/// Where a ray is in the grid, and how far along it the next sides of its cell are.
+struct SphereGrid::Walk {
+  std::array<std::int32_t, 3> cell, step, end;  // of the last cell before a side, one further
+  std::array<double, 3> exit, between;          // distance to the next side of the cell, and from side to side
+  double leave;                                 // distance at which the ray is past everything
+
+  /// Axis of the side that comes first.
+  std::size_t next() const { return exit[0] < exit[1] ? (exit[0] < exit[2] ? 0 : 2) : (exit[1] < exit[2] ? 1 : 2); }
+};
+
+/// Puts the ray into its tile and finds the first cell. \return whether it comes to the grid at all
 template <bool around>
-LocalHit SphereGrid::walk(LocalRay ray, double limit) const {
+bool SphereGrid::enter(LocalRay& ray, double limit, Walk& walk) const {
   std::array<double*, 3> const origin{&ray.ox, &ray.oy, &ray.oz};
   std::array const direction{ray.dx, ray.dy, ray.dz}, inverse{1 / ray.dx, 1 / ray.dy, 1 / ray.dz};
-  double enter = 0, leave = limit;
+  double enter = 0;
+  walk.leave = limit;
   for (std::size_t a = 0; a < 3; ++a) {
     Axis const& axis = axis_[a];
     if (around && axis.period > 0) continue;
     double const from = axis.lower - *origin[a], to = from + axis.cells * axis.edge;
     if (direction[a] == 0) {
-      if (from > 0 || to < 0) return {};
+      if (from > 0 || to < 0) return false;
       continue;
     }
     double const one = from * inverse[a], other = to * inverse[a];
     enter = std::max(enter, std::min(one, other));
-    leave = std::min(leave, std::max(one, other));
+    walk.leave = std::min(walk.leave, std::max(one, other));
   }
-  if (!(enter <= leave)) return {};
+  if (!(enter <= walk.leave)) return false;
 
-  std::array<std::int32_t, 3> cell, step, end;
-  std::array<double, 3> exit, between;
   for (std::size_t a = 0; a < 3; ++a) {
     Axis const& axis = axis_[a];
     bool const tiled = around && axis.period > 0, up = direction[a] > 0;
@@ -160,57 +165,63 @@ LocalHit SphereGrid::walk(LocalRay ray, double limit) const {
       *origin[a] -= periods * axis.period;
       at -= periods * (stop - begin);
     }
-    cell[a] = std::clamp(static_cast<std::int32_t>(at), begin, stop - 1);
-    step[a] = up ? 1 : -1;
-    end[a] = up ? stop : begin - 1;
-    exit[a] = direction[a] == 0 ? infinity : (axis.lower + (cell[a] + up) * axis.edge - *origin[a]) * inverse[a];
-    between[a] = axis.edge * std::abs(inverse[a]);
+    std::int32_t const cell = std::clamp(static_cast<std::int32_t>(at), begin, stop - 1);
+    walk.cell[a] = cell;
+    walk.step[a] = up ? 1 : -1;
+    walk.end[a] = up ? stop : begin - 1;
+    walk.exit[a] = direction[a] == 0 ? infinity : (axis.lower + (cell + up) * axis.edge - *origin[a]) * inverse[a];
+    walk.between[a] = axis.edge * std::abs(inverse[a]);
   }
+  return true;
+}
 
+LocalHit SphereGrid::hit_at(LocalRay const& ray, double distance, std::size_t lane) const {
+  Pack const& pack = packs_[lane / lanes_at_once];
+  std::size_t const l = lane % lanes_at_once;
+  LocalHit hit;
+  hit.distance = distance;
+  hit.sphere = sphere_[lane];
+  hit.point = Vec3(ray.ox, ray.oy, ray.oz) + distance * Vec3(ray.dx, ray.dy, ray.dz);
+  hit.normal = unit((1 / pack.radius[l]) * (hit.point - Vec3(pack.x[l], pack.y[l], pack.z[l])));
+  return hit;
+}
+
+/// `around`: through the periodic sides.
+template <bool around>
+LocalHit SphereGrid::walk(LocalRay ray, double limit) const {
+  Walk walk;
+  if (!enter<around>(ray, limit, walk)) return {};
   Numbers nearest = infinity + Numbers{};
   Flags place{};  // lane of the packs
-  Flags const lane{0, 1, 2, 3, 4, 5, 6, 7};
-  int crossings = 0;
-  LocalHit hit;
-  for (;;) {
-    std::size_t const here = static_cast<std::size_t>(cell[0]) +
-                             static_cast<std::size_t>(axis_[0].cells) *
-                                 (static_cast<std::size_t>(cell[1]) +
-                                  static_cast<std::size_t>(axis_[1].cells) * static_cast<std::size_t>(cell[2]));
+  for (int crossings = 0;;) {
+    std::size_t const here = index(walk.cell[0], walk.cell[1], walk.cell[2]);
     for (std::uint32_t p = first_pack_[here]; p < first_pack_[here + 1]; ++p) {
       Pack const& pack = packs_[p];
       Numbers const distance =
           entry_distance<Numbers>(pack.x - ray.ox, pack.y - ray.oy, pack.z - ray.oz, pack.radius, ray);
       Flags const nearer = distance < nearest;
       nearest = nearer ? distance : nearest;
-      place = nearer ? lane + static_cast<std::int64_t>(p * lanes_at_once) : place;
+      place = nearer ? Flags{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int64_t>(p * lanes_at_once) : place;
     }
-    std::size_t const a = exit[0] < exit[1] ? (exit[0] < exit[2] ? 0 : 2) : (exit[1] < exit[2] ? 1 : 2);
-    if (bits(nearest <= exit[a]) || exit[a] >= leave) break;
-    cell[a] += step[a];
-    exit[a] += between[a];
-    if (cell[a] != end[a]) continue;
+    std::size_t const a = walk.next();
+    if (bits(nearest <= walk.exit[a]) || walk.exit[a] >= walk.leave) break;
+    walk.cell[a] += walk.step[a];
+    walk.exit[a] += walk.between[a];
+    if (walk.cell[a] != walk.end[a]) continue;
     if (!around || !(axis_[a].period > 0)) break;
     if (++crossings > max_crossings) {
-      hit.undecided = true;
-      return hit;
+      LocalHit lost;
+      lost.undecided = true;
+      return lost;
     }
     // Into the next tile: what reaches over the side is met there again, as its copy.
-    cell[a] -= step[a] * (axis_[a].tile_end - axis_[a].tile_begin);
-    *origin[a] -= step[a] * axis_[a].period;
+    walk.cell[a] -= walk.step[a] * (axis_[a].tile_end - axis_[a].tile_begin);
+    (a == 0 ? ray.ox : ray.oy) -= walk.step[a] * axis_[a].period;
     nearest = infinity + Numbers{};
   }
   double const distance = least(nearest);
-  if (!(distance <= limit) || distance == infinity) return hit;
-  auto const lane_met = static_cast<std::size_t>(std::countr_zero(bits(nearest == distance)));
-  auto const at = static_cast<std::size_t>(place[lane_met]);
-  Pack const& pack = packs_[at / lanes_at_once];
-  std::size_t const l = at % lanes_at_once;
-  hit.distance = distance;
-  hit.sphere = sphere_[at];
-  hit.point = Vec3(ray.ox, ray.oy, ray.oz) + distance * Vec3(ray.dx, ray.dy, ray.dz);
-  hit.normal = unit((1 / pack.radius[l]) * (hit.point - Vec3(pack.x[l], pack.y[l], pack.z[l])));
-  return hit;
+  if (!(distance <= limit) || distance == infinity) return {};
+  return hit_at(ray, distance, static_cast<std::size_t>(place[std::countr_zero(bits(nearest == distance))]));
 }
 
 LocalHit SphereGrid::first_hit(LocalRay const& ray) const { return walk<true>(ray, infinity); }

@@ -45,9 +45,17 @@ class SphereGrid {
     std::int32_t cells = 0, tile_begin = 0, tile_end = 0;  ///< in all, and the range of the tile
   };
 
+  struct Walk;
+
   void choose_cells(std::span<Sphere const> spheres, std::array<double, 2> tile, std::array<double, 2> period);
   template <class Visit>
   void visit_cells(Sphere const& sphere, Visit&& visit) const;
+  std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return static_cast<std::size_t>(i + axis_[0].cells * (j + std::int64_t{axis_[1].cells} * k));
+  }
+  template <bool around>
+  bool enter(LocalRay& ray, double limit, Walk& walk) const;
+  LocalHit hit_at(LocalRay const& ray, double distance, std::size_t lane) const;
   template <bool around>
   LocalHit walk(LocalRay ray, double limit) const;
 

@@ -180,6 +180,23 @@ TEST_P(OfBackend, GapsOfBlackLatticesAreExact) {
   EXPECT_NEAR(deep, 1 - std::numbers::pi / 4, deep_error);
 }
 
+TEST_P(OfBackend, LatticesAbsorbAsInAnotherTracer) {
+  // Reference: built-in Embree spheres, random rays, 4e5 paths, with the standard errors given.
+  struct Case {
+    Lattice lattice;
+    std::complex<double> metal;
+    double expected, error;
+  } const cases[] = {{hexagonal_layers(1), stainless_steel, .4892, .0005},
+                     {hexagonal_layers(2), silver, .0864, .0005},
+                     {face_centred_cubic(16), stainless_steel, .61876, .00047}};
+  for (Case const& c : cases) {
+    BedScene const scene(c.lattice.bed, {}, c.lattice.period, GetParam());
+    AbsorbedPower const power = trace_uniform(scene, c.metal, 100000);
+    EXPECT_LT(power.standard_error, 4e-4);
+    EXPECT_NEAR(power.absorptivity, c.expected, 3 * std::hypot(power.standard_error, c.error));
+  }
+}
+
 TEST_P(OfBackend, OverlappingGrainsHaveTheShadowOfTheirUnion) {
   // Two unit spheres whose centres are h apart as seen from above: 2 pi less the lens that the two discs share.
   for (double const h : {0.2, 1.0, 1.9}) {
