@@ -144,6 +144,8 @@ ReposePile repose_pile(Case const& checked, Motion const& motion, Communicator c
                        bool show_progress) {
   CalibrateSettings const& c = checked.calibrate;
   Rig const rig = pile_rig(checked);
+  Motion awake = motion;
+  awake.grains_sleep = false;  // a slope comes to rest by slow creep, which sleeping grains do not do
   PowderBed bed;
   double time = 0;
   bool at_rest = false;
@@ -151,7 +153,7 @@ ReposePile repose_pile(Case const& checked, Motion const& motion, Communicator c
   for (std::int64_t batch = 0; batch < c.batches; ++batch) {
     std::int64_t const from = c.pile_particles * batch / c.batches, to = c.pile_particles * (batch + 1) / c.batches;
     add_loose_cloud(bed, checked, cloud_above(bed, checked, to - from), to - from, from, c.fall_speed);
-    at_rest = settle_pile(bed, time, motion, rig, c.settling_time, communicator, progress);
+    at_rest = settle_pile(bed, time, awake, rig, c.settling_time, communicator, progress);
   }
   double const disc = disc_in_diameters * std::cbrt(6 / pi * mean_grain_volume(checked.powder));
   ReposePile pile = measure_pile(std::move(bed), c.base_diameter, 0, rig.width / 2, disc);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -155,6 +156,12 @@ void Simulation::rebuild() {
   shares_.clear();
   share_out(team_.threads());
   clock.add_to(phases_.neighbours);
+}
+
+void Simulation::set_gravity(Vec3 const& gravity) {
+  if (motion_.grains_sleep || motion_.keeps_energy_ledger)
+    throw std::logic_error("gravity may turn only where no grain sleeps and no ledger of energy is kept");
+  rig_.gravity = gravity;
 }
 
 PowderBed Simulation::gather() {

@@ -85,8 +85,8 @@ class Simulation {
   PhaseTimes const& phases() const { return phases_; }  ///< of this rank, since scatter
   std::int64_t sleeping() const;                        ///< Collective.
   double coordination() const;                          ///< mean number of touching grains of a grain. Collective.
-  /// \pre no ledger of energy is kept
-  void set_gravity(Vec3 const& gravity) { rig_.gravity = gravity; }
+  /// \pre no ledger of energy is kept, and no grain sleeps \throws std::logic_error otherwise
+  void set_gravity(Vec3 const& gravity);
   /// What became of the energy since scatter. Collective. \pre Motion::keeps_energy_ledger; gravity along no period
   EnergyLedger energy() const;
   /// Grains faster than `speed` [m/s]. Collective.

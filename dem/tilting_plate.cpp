@@ -84,7 +84,10 @@ void find_slip(TiltingPlate& plate, double gravity, double mean_diameter) {
 TiltingPlate tilting_plate(Case const& checked, Motion const& motion, Communicator const& communicator,
                            bool show_progress) {
   CalibrateSettings const& c = checked.calibrate;
-  Simulation simulation(motion, plate_rig(c.plate_length), communicator);
+  Motion awake = motion;
+  awake.grains_sleep = false;  // gravity turns under grains that lie still
+  awake.keeps_energy_ledger = false;
+  Simulation simulation(awake, plate_rig(c.plate_length), communicator);
   simulation.scatter(cloud_over_plate(checked, c.plate_length, c.plate_particles));
   bool const shown = show_progress && communicator.is_root();
   settle(simulation, c.settling_time, "layer", shown);
