@@ -20,6 +20,12 @@ int cores_per_rank() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
 }
 
+std::vector<std::string> overrides_with_seed(CaseOptions const& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
+  return overrides;
+}
+
 }  // namespace
 
 void add_case_options(CLI::App& verb, CaseOptions& options) {
@@ -32,10 +38,13 @@ void add_case_options(CLI::App& verb, CaseOptions& options) {
 }
 
 Case read_case(CaseOptions const& options, std::optional<Process> process) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
   omp_set_num_threads(options.threads > 0 ? options.threads : cores_per_rank());
-  return layerloop::read_case(options.case_file, overrides, process);
+  return layerloop::read_case(options.case_file, overrides_with_seed(options), process);
+}
+
+Case case_of_text(CaseOptions const& options, std::string const& text, std::optional<Process> process) {
+  omp_set_num_threads(options.threads > 0 ? options.threads : cores_per_rank());
+  return layerloop::case_of_text(text, "the built-in case", overrides_with_seed(options), process);
 }
 
 }  // namespace layerloop::apps

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   apps::Action action;
   apps::add_run(program, action);
   apps::add_spread(program, action);
+  apps::add_absorb(program, action);
   apps::add_bench(program, action);
   apps::add_check(program, action);
   apps::add_calibrate(program, action);

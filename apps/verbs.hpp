@@ -23,6 +23,7 @@ struct CaseOptions {
 using Action = std::function<void()>;
 void add_run(CLI::App& program, Action& chosen);
 void add_spread(CLI::App& program, Action& chosen);
+void add_absorb(CLI::App& program, Action& chosen);
 void add_bench(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);
 void add_calibrate(CLI::App& program, Action& chosen);
@@ -31,6 +32,8 @@ void add_doctor(CLI::App& program, Action& chosen);
 void add_case_options(CLI::App& verb, CaseOptions& options);
 /// Also sets the number of threads. Without a process, the case tells by itself (core/case_file.hpp).
 Case read_case(CaseOptions const& options, std::optional<Process> process);
+/// The same of a text in the place of the file.
+Case case_of_text(CaseOptions const& options, std::string const& text, std::optional<Process> process);
 
 /// "FILE is a good case" and what it will cost.
 void print_cost(Case const& checked, std::filesystem::path const& case_file);

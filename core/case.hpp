@@ -25,9 +25,15 @@ enum class Dosing { feed, rain };
 enum class EndWall { flush, open, high };
 enum class BladeCollision { stop, report };
 enum class SpotDefinition { one_over_e2, d4sigma, fwhm };
+enum class SpotProfile { gaussian, top_hat, ring, file };
+enum class LaserPolarisation { unpolarised, s, p, x, y, circular };
+/// Whether light that is reflected keeps its polarisation or is unpolarised again at every hit.
+enum class PolarisationModel { averaged, tracked };
+/// Where the bed of the verb `absorb` comes from.
+enum class AbsorbingBed { spread, settled, file };
 enum class ScanKind { track, hatch };
 /// What becomes of a spread layer, or that there is none; the verb decides.
-enum class Process { melting, spreading, calibrating };
+enum class Process { melting, spreading, calibrating, absorbing };
 enum class HeatSolver { explicit_steps, implicit_steps, automatic };
 
 struct PowderSettings {
@@ -115,18 +121,38 @@ struct MachineSettings {
 struct LaserSettings {
   double power = 0;          ///< [W]
   double wavelength = 0;     ///< [m]
-  double spot_diameter = 0;  ///< [m], by `spot_definition`
+  double spot_diameter = 0;  ///< at the focus [m], by `spot_definition`
   SpotDefinition spot_definition = SpotDefinition::one_over_e2;
+  SpotProfile profile = SpotProfile::gaussian;
+  std::string profile_file = "";          ///< intensity over radius
+  double ring_width = 0;                  ///< across the crest of a ring, by `spot_definition` [m]
+  double ellipticity = 1;                 ///< extent along y over extent along x, at the same area
+  double focus_offset = 0;                ///< height of the focus above the bed [m]
+  std::optional<double> rayleigh_length;  ///< [m]; parallel light without
+  double incidence_angle = 0;             ///< from straight down [rad]
+  double incidence_azimuth = 0;           ///< direction of travel from x towards y [rad]
+  LaserPolarisation polarisation = LaserPolarisation::unpolarised;
   std::optional<double> absorptivity;  ///< replaces the tracer
 
-  double spot_radius() const;  ///< 1/e2 radius w [m]: I = 2P/(pi w^2) exp(-2 r^2/w^2)
+  /// On the bed [m]: 1/e2 radius w of a Gaussian, I = 2P/(pi w^2) exp(-2 r^2/w^2); edge of a top hat; crest of a ring.
+  double spot_radius() const;
+  double ring_half_width() const;  ///< 1/e2, on the bed [m]
+  double widening() const;         ///< of the beam from its focus to the bed
 };
 
 struct OpticsSettings {
   std::optional<std::array<double, 2>> refractive_index;  ///< [n, k], replaces the material's
-  std::int64_t rays = 0;                                  ///< per beam position
-  double position_spacing = 0;                            ///< between the beam positions that are traced [m]
-  bool retrace = true;  ///< at every position on the surface that has melted by then
+  std::optional<double> grey_reflectance;                 ///< at any angle; replaces every index
+  std::string floor = "";      ///< material below the powder, "black" or "none"; empty: the powder's
+  bool uniform_beam = false;   ///< verb absorb: light evenly over the bed, not the spot
+  double oxide_thickness = 0;  ///< film on all metal [m]
+  std::optional<std::array<double, 2>> oxide_index;  ///< [n, k] of it; without: that of the metal's own oxide
+  double diffuse_share = 0;                          ///< of the reflected light
+  double temperature = 300;                          ///< of the metal that reflects [K]
+  PolarisationModel polarisation_model = PolarisationModel::averaged;
+  std::int64_t rays = 0;        ///< per beam position
+  double position_spacing = 0;  ///< between the beam positions that are traced [m]
+  bool retrace = true;          ///< at every position on the surface that has melted by then
 };
 
 struct ScanSettings {
@@ -181,6 +207,16 @@ struct CalibrateSettings {
   double parameter_step = 0;  ///< relative, of the sensitivities
 };
 
+/// The verb absorb (coupling/absorption_study.hpp).
+struct AbsorbSettings {
+  AbsorbingBed bed = AbsorbingBed::spread;
+  double plate_length = 0;           ///< period along x and y of the plate on which powder settles [m]
+  double target_standard_error = 0;  ///< of the absorptivity
+  std::int64_t max_rays = 0;
+  std::int64_t depth_bins = 0;
+  double map_spacing = 0;  ///< pixels of the map of absorbed light [m]
+};
+
 /// One `[effects.NAME]` table.
 struct EffectSettings {
   bool enabled = false;
@@ -202,9 +238,11 @@ struct Case {
   HeatSettings heat;
   RunSettings run;
   CalibrateSettings calibrate;
+  AbsorbSettings absorb;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
-  Material material;                 ///< the powder's, overrides applied; substrate and part are the same metal
-  std::vector<Material> admixtures;  ///< the others of powder.mixture
+  Material material;                       ///< the powder's, overrides applied; substrate and part are the same metal
+  std::vector<Material> admixtures;        ///< the others of powder.mixture
+  std::optional<Material> floor_material;  ///< of optics.floor, where that is a metal
   std::map<std::string, BodySettings> bodies;                ///< by material; of the walls: "wall"
   std::map<std::array<std::string, 2>, PairSettings> pairs;  ///< by materials, or material and "wall", ascending
 
@@ -221,7 +259,11 @@ struct Case {
     return index == 0 || admixtures.empty() ? material.density
                                             : admixtures.at(static_cast<std::size_t>(index - 1)).density;
   }
-  bool has_machine() const { return process != Process::calibrating; }
+  bool has_machine() const {
+    return process != Process::calibrating && (process != Process::absorbing || absorb.bed == AbsorbingBed::spread);
+  }
+  bool has_light() const { return has_laser() || process == Process::absorbing; }
+  bool has_spot() const { return has_laser() || (process == Process::absorbing && !optics.uniform_beam); }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }
   /// 0 for an effect that is off (or that a case made without a file does not know).
   double effect_strength(std::string const& effect) const {

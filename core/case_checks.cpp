@@ -38,6 +38,7 @@ class CaseChecks {
     energy_ledger();
     material();
     calibrate();
+    if (c_.has_light()) light();
     if (!c_.has_machine()) return;
     feed();
     piston();
@@ -131,10 +132,11 @@ class CaseChecks {
              c_.powder.material);
     else if (std::abs(sum - 1) > 1e-6)
       report("powder.mixture", "sums to {:.6g} (must sum to 1)", sum);
-    else if (mixture.size() > 1 && (c_.process != Process::spreading || c_.machine.frozen_zone))
+    else if (mixture.size() > 1 &&
+             (c_.process == Process::melting || c_.process == Process::calibrating || c_.machine.frozen_zone))
       report("powder.mixture",
              "has {} materials (what melts or freezes is of one material so far, and calibration varies the values of "
-             "one) leave the table out, or use the verb spread without machine.frozen_zone",
+             "one) leave the table out, or use the verbs spread or absorb without machine.frozen_zone",
              mixture.size());
   }
 
@@ -318,7 +320,7 @@ class CaseChecks {
   void beam() const {
     ScanSettings const& scan = c_.scan;
     if (!known({"laser.spot_diameter", "laser.spot_definition"})) return;
-    double const spot = 2 * c_.laser.spot_radius();
+    double const spot = 2 * (c_.laser.spot_radius() + c_.laser.ring_half_width());
     if (known({"heat.cell_size"}) && c_.heat.cell_size > 0.5 * spot) {
       report("heat.cell_size", "= {} (must resolve the beam: at most its 1/e2 radius, {})", length(c_.heat.cell_size),
              length(0.5 * spot));
@@ -376,27 +378,57 @@ class CaseChecks {
              "= {} (must be at most laser.spot_diameter, {}, or parts of the track are not hit)",
              length(c_.optics.position_spacing), length(c_.laser.spot_diameter));
     }
-    wavelength();
-    if (!c_.laser.absorptivity && known({"material.refractive_index", "optics.refractive_index"}) &&
-        c_.material.refractive_index.real() <= 0) {
-      report(c_.optics.refractive_index ? "optics.refractive_index" : "material.refractive_index",
-             "has n = {:g} (must be above 0)", c_.material.refractive_index.real());
-    }
+    if (known({"optics.floor"}) && c_.optics.floor == "none")
+      report("optics.floor", "= \"none\" (the plate below the powder has to be there to be melted) name a metal");
+    if (c_.laser.absorptivity && known({"laser.profile", "laser.incidence_angle", "laser.ellipticity"}) &&
+        (c_.laser.profile != SpotProfile::gaussian || c_.laser.incidence_angle != 0 || c_.laser.ellipticity != 1))
+      report("laser.absorptivity",
+             "= {:g} (only a round Gaussian beam from above can do without the tracer) leave it out",
+             *c_.laser.absorptivity);
   }
 
-  /// The built-in indices are those at 1.07 um (1.03 to 1.09 um differ by less than their spread).
-  void wavelength() const {
-    auto const built_in = built_in_materials().find(c_.material.name);
-    if (c_.laser.absorptivity || built_in == built_in_materials().end() ||
-        !known({"laser.wavelength", "material.refractive_index"})) {
+  void light() const {
+    LaserSettings const& laser = c_.laser;
+    if (known({"laser.profile", "laser.profile_file"}) &&
+        (laser.profile == SpotProfile::file) == laser.profile_file.empty())
+      report("laser.profile_file", "= \"{}\" (a table is needed for laser.profile = \"file\", and only then)",
+             laser.profile_file);
+    if (known({"laser.profile", "laser.ring_width"}) && (laser.profile == SpotProfile::ring) != (laser.ring_width > 0))
+      report("laser.ring_width", "= {} (must be above 0 for laser.profile = \"ring\", and only then)",
+             length(laser.ring_width));
+    if (known({"laser.focus_offset", "laser.rayleigh_length"}) && laser.focus_offset != 0 && !laser.rayleigh_length)
+      report("laser.focus_offset", "= {} (how fast the beam widens is not known) give laser.rayleigh_length",
+             length(laser.focus_offset));
+    refractive_index();
+    optical_effects();
+  }
+
+  void refractive_index() const {
+    if (c_.laser.absorptivity || c_.optics.grey_reflectance ||
+        !known({"material.refractive_index", "optics.refractive_index", "laser.wavelength"}))
       return;
-    }
-    bool const own_index = c_.material.refractive_index != built_in->second.refractive_index;
-    if (!own_index && std::abs(c_.laser.wavelength - 1.06e-6) > 0.03e-6 + 1e-12) {
-      report("laser.wavelength",
-             "= {} (the built-in refractive index of {} is that at 1.07 um) give optics.refractive_index",
-             length(c_.laser.wavelength), c_.material.name);
-    }
+    if (c_.material.refractive_index.real() <= 0)
+      report(c_.optics.refractive_index ? "optics.refractive_index" : "material.refractive_index",
+             "has n = {:g} (must be above 0; [material.{}] gives neither refractive_index nor optical_data)",
+             c_.material.refractive_index.real(), c_.material.name);
+    for (Material const& metal : c_.admixtures)
+      if (metal.refractive_index.real() <= 0)
+        report("powder.mixture", "has {}, which has no refractive index (light falls on it) give its optical_data",
+               metal.name);
+  }
+
+  void optical_effects() const {
+    OpticsSettings const& optics = c_.optics;
+    double const share = optics.diffuse_share * c_.effect_strength("diffuse_scattering");
+    if (known({"optics.oxide_index"}) && optics.oxide_index && optics.oxide_index->at(0) <= 0)
+      report("optics.oxide_index", "has n = {:g} (must be above 0)", optics.oxide_index->at(0));
+    if (known({"optics.diffuse_share", "effects.diffuse_scattering.strength"}) && share > 1)
+      report("optics.diffuse_share", "= {:g} (more than all of the light would be scattered)", share);
+    bool const has_film = optics.oxide_thickness > 0 && c_.effect_strength("surface_oxide") > 0;
+    if (known({"optics.grey_reflectance", "optics.oxide_thickness"}) && optics.grey_reflectance && has_film)
+      report("optics.oxide_thickness",
+             "= {} (a grey surface has no film: optics.grey_reflectance is given) leave one out",
+             length(optics.oxide_thickness));
   }
 
   Case const& c_;

@@ -11,6 +11,7 @@
 #include "core/case_schema.hpp"
 #include "core/case_values.hpp"
 #include "core/error.hpp"
+#include "core/optical_constants.hpp"
 #include "core/spelling.hpp"
 #include "core/toml_entries.hpp"
 #include "core/write_file.hpp"
@@ -200,6 +201,8 @@ class CaseReader {
     }
     choose_material(metals);
     choose_admixtures(metals);
+    choose_floor(metals);
+    choose_optics();
     read_contact_tables(metals);
   }
 
@@ -275,9 +278,49 @@ class CaseReader {
       case_.material.refractive_index = {index->at(0), index->at(1)};
   }
 
+  void choose_floor(std::map<std::string, Material> const& metals) {
+    std::string const& floor = case_.optics.floor;
+    if (floor.empty() || floor == "black" || floor == "none") return;
+    if (auto const metal = metals.find(floor); metal != metals.end()) {
+      case_.floor_material = metal->second;
+      return;
+    }
+    std::vector<std::string> names = names_of(metals);
+    names.insert(names.end(), {"black", "none"});
+    report(place_of("optics.floor"), fmt::format("optics.floor = \"{}\" is not known (known: {}){}", floor,
+                                                 fmt::join(names, ", "), did_you_mean(floor, names)));
+  }
+
+  /// Indices at the laser's wavelength, where none is given by hand.
+  void choose_optics() {
+    std::vector<Material*> metals{&case_.material};
+    for (Material& metal : case_.admixtures) metals.push_back(&metal);
+    if (case_.floor_material) metals.push_back(&*case_.floor_material);
+    if (!case_.has_light() || case_.laser.absorptivity || case_.optics.grey_reflectance) return;
+    for (Material* metal : metals) choose_index(*metal);
+  }
+
+  void choose_index(Material& metal) {
+    double const wavelength = case_.laser.wavelength;
+    if (metal.optical_data.empty() || !(wavelength > 0)) return;
+    bool const known = has_optical_data(metal.optical_data);
+    bool const by_hand = metal.refractive_index != 0.0 || (&metal == &case_.material && case_.optics.refractive_index);
+    try {
+      std::complex<double> const index = optical_data(metal.optical_data)(wavelength);
+      if (by_hand && metal.refractive_index != index) metal.optical_data.clear();
+      if (!by_hand) metal.refractive_index = index;
+    } catch (InputError const& fault) {
+      if (by_hand) return metal.optical_data.clear();
+      report(place_of(known ? "laser.wavelength" : "material.optical_data"),
+             fmt::format("{}: {}", metal.name, fault.what()));
+      unsound_.insert("material.refractive_index");
+    }
+  }
+
   /// What a misspelt preset or frozen zone would have supplied is not asked for.
   bool needed(CaseKey const& row) const {
-    bool const laser_unclear = row.need == Need::with_laser && unsound_.contains("machine.frozen_zone");
+    bool const of_laser = row.need == Need::with_laser || row.need == Need::with_light || row.need == Need::with_spot;
+    bool const laser_unclear = of_laser && unsound_.contains("machine.frozen_zone");
     return is_needed(row, case_) && !laser_unclear && !unsound_.contains("case.preset");
   }
 
@@ -350,10 +393,15 @@ Case read_case(std::filesystem::path const& path, std::vector<std::string> const
   if (!std::filesystem::is_regular_file(path)) {
     throw FileError(fmt::format("cannot read the case {} (not a file)", path.string()));
   }
+  return case_of_text(read_file(path), path, overrides, process);
+}
+
+Case case_of_text(std::string const& text, std::filesystem::path const& path, std::vector<std::string> const& overrides,
+                  std::optional<Process> process) {
   std::vector<Fault> syntax;
   TomlContent content;
   try {
-    content = parse_toml(read_file(path));
+    content = parse_toml(text);
   } catch (SyntaxFault const& fault) {
     syntax.push_back(fault.fault);
   }
@@ -369,8 +417,9 @@ Case read_case(std::filesystem::path const& path, std::vector<std::string> const
   CaseReader reader(std::move(content), std::move(set));
   Case result = reader.read(process);
   if (!reader.faults().empty()) throw_faults(reader.faults(), path.string());
-  if (result.heat.cell_size == 0) result.heat.cell_size = common_cell(result.machine, path);
-  for (std::string* file : {&result.machine.substrate, &result.powder.bed}) {  // seen from the case
+  if (result.heat.cell_size == 0 && result.has_machine()) result.heat.cell_size = common_cell(result.machine, path);
+  for (std::string* file :
+       {&result.machine.substrate, &result.powder.bed, &result.laser.profile_file}) {  // seen from the case
     if (!file->empty()) *file = (std::filesystem::absolute(path).parent_path() / *file).lexically_normal().string();
   }
   return result;

@@ -15,6 +15,10 @@ namespace layerloop {
 Case read_case(std::filesystem::path const& path, std::vector<std::string> const& overrides,
                std::optional<Process> process = Process::melting);
 
+/// The same of a text; `path` names it in messages, and files that it names are looked for beside it.
+Case case_of_text(std::string const& text, std::filesystem::path const& path, std::vector<std::string> const& overrides,
+                  std::optional<Process> process);
+
 /// The case as TOML with every key, in SI, defaults filled in: reading it again gives the same case.
 std::string resolved_toml(Case const& checked);
 

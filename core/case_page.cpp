@@ -32,6 +32,10 @@ std::string default_column(CaseKey const& row) {
       return row.table == "material" ? "built-in" : "required";
     case Need::with_laser:
       return row.table == "material" ? "built-in" : "required (not with `frozen_zone` or for `spread`)";
+    case Need::with_light:
+      return "required (not with `frozen_zone` or for `spread`)";
+    case Need::with_spot:
+      return "required (not with `frozen_zone`, `uniform_beam` or for `spread`)";
     case Need::with_part:
       return "required (not for `spread`)";
     case Need::with_energy_density:

@@ -6,35 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/case_rows.hpp"
+
 namespace layerloop {
 namespace {
-
-using D = Dimension;
-constexpr auto open = Range::End::open;
-
-/// `at<&Case::laser, &LaserSettings::power>` reaches that member in a case.
-template <auto... path>
-constexpr auto at = [](Case& into) -> auto& {
-  return (into.*....*path);
-};
-
-template <auto... path>
-Choice choice(std::vector<std::string> words) {
-  return {std::move(words), [](Case const& from) { return static_cast<std::size_t>((from.*....*path)); },
-          [](Case& into, std::size_t index) {
-            auto& member = (into.*....*path);
-            member = static_cast<std::remove_reference_t<decltype(member)>>(index);
-          }};
-}
-
-template <auto... path>
-Choice word(std::vector<std::string> const& words) {
-  return {words,
-          [words](Case const& from) {
-            return static_cast<std::size_t>(std::find(words.begin(), words.end(), (from.*....*path)) - words.begin());
-          },
-          [words](Case& into, std::size_t index) { (into.*....*path) = words.at(index); }};
-}
 
 // One row a key, its sentence last.
 // clang-format off
@@ -185,51 +160,6 @@ std::vector<CaseKey> machine_rows() {
   };
 }
 
-std::vector<CaseKey> laser_rows() {
-  using L = LaserSettings;
-  using O = OpticsSettings;
-  using S = ScanSettings;
-  constexpr auto laser = &Case::laser;
-  constexpr auto optics = &Case::optics;
-  constexpr auto scan = &Case::scan;
-  return {
-      {"laser", "power", at<laser, &L::power>, D::power, {1, 5000}, Need::with_laser, "", "Power of the beam."},
-      {"laser", "wavelength", at<laser, &L::wavelength>, D::length, {2e-7, 1.2e-5}, Need::with_laser, "",
-       "Wavelength of the beam; the refractive index must belong to it."},
-      {"laser", "spot_diameter", at<laser, &L::spot_diameter>, D::length, {1e-6, 2e-3}, Need::with_laser, "",
-       "Diameter of the Gaussian beam on the bed, measured by `spot_definition`."},
-      {"laser", "spot_definition", choice<laser, &L::spot_definition>({"1/e2", "D4sigma", "FWHM"}),
-       D::none, {}, Need::with_laser, "",
-       "Level at which `spot_diameter` is measured (1/e2 = D4sigma = 1.70 FWHM for a Gaussian)."},
-      {"laser", "absorptivity", at<laser, &L::absorptivity>, D::none, {0, 1, open}, Need::never, "",
-       "Share of the power that is absorbed; given, it replaces the ray tracer."},
-
-      {"optics", "refractive_index", at<optics, &O::refractive_index>, D::none, {0, 100}, Need::never, "",
-       "[n, k] of the metal at the laser's wavelength; replaces the material's."},
-      {"optics", "rays", at<optics, &O::rays>, D::none, {100, 1e9}, Need::never, "20000",
-       "Rays traced for each beam position."},
-      {"optics", "position_spacing", at<optics, &O::position_spacing>,
-       D::length, {1e-6, 1e-3}, Need::never, "\"20 um\"",
-       "Distance along a track between beam positions that are traced."},
-      {"optics", "retrace", at<optics, &O::retrace>, D::none, {}, Need::never, "true",
-       "Whether each position is traced on the surface that has melted by then, or on the layer as it was spread."},
-
-      {"scan", "kind", choice<scan, &S::kind>({"track", "hatch"}), D::none, {}, Need::never, "\"hatch\"",
-       "One track, or parallel tracks to and fro."},
-      {"scan", "scan_speed", at<scan, &S::scan_speed>, D::speed, {0.01, 20}, Need::with_laser, "",
-       "Speed of the beam."},
-      {"scan", "track_length", at<scan, &S::track_length>, D::length, {1e-5, 0.05}, Need::with_laser, "",
-       "Length of a track, along the recoating direction."},
-      {"scan", "tracks", at<scan, &S::tracks>, D::none, {1, 10000}, Need::never, "1", "Tracks of a layer."},
-      {"scan", "hatch_spacing", at<scan, &S::hatch_spacing>, D::length, {0, 2e-3}, Need::never, "0",
-       "Distance between neighbouring tracks; needed with more than one."},
-      {"scan", "rotation", at<scan, &S::rotation>,
-       D::angle, {-20 * std::numbers::pi, 20 * std::numbers::pi}, Need::never, "0",
-       "Turn of the hatch from layer to layer: a multiple of 180 deg."},
-      {"scan", "dwell", at<scan, &S::dwell>, D::time, {0, 100}, Need::never, "0", "Time between tracks, laser off."},
-  };
-}
-
 std::vector<CaseKey> heat_and_run_rows() {
   using H = HeatSettings;
   using R = RunSettings;
@@ -348,8 +278,10 @@ std::vector<CaseKey> material_rows() {
        "Molar mass of the vapour."},
       {"material", "emissivity", at<m, &M::emissivity>, D::none, {0, 1}, Need::with_laser, "",
        "Total emissivity of the surface."},
-      {"material", "refractive_index", at<m, &M::refractive_index>, D::none, {0, 100}, Need::with_laser, "",
-       "[n, k] at the laser's wavelength."},
+      {"material", "refractive_index", at<m, &M::refractive_index>, D::none, {0, 100}, Need::never, "",
+       "[n, k] at the laser's wavelength; replaces `optical_data`."},
+      {"material", "optical_data", at<m, &M::optical_data>, D::none, {}, Need::never, "",
+       "Set of optical constants, for example \"Cu (Johnson 1972)\"; an alloy borrows those of an element."},
       {"material", "source", at<m, &M::source>, D::none, {}, Need::always, "", "Where the values come from."},
   };
 }
@@ -375,6 +307,14 @@ std::vector<Effect> const& effects() {
   static std::vector<Effect> const rows = {
       {"latent_heat", "true", 2, "Latent heat of fusion between solidus and liquidus."},
       {"variable_conductivity", "true", 1, "Conductivity over temperature; off: its value at the solidus."},
+      {"surface_oxide", "true", 100,
+       "Oxide film of optics.oxide_thickness on all metal, as interfering layers (Born & Wolf 1.6.4); the strength "
+       "scales its thickness."},
+      {"diffuse_scattering", "true", 1,
+       "Share optics.diffuse_share of the reflected light is scattered by Lambert's law; the strength scales it."},
+      {"optical_temperature", "true", 10,
+       "Refractive index at optics.temperature: the damping of the conduction electrons grows with the resistivity, "
+       "that follows from material.conductivity by Wiedemann and Franz; the strength scales the change from 300 K."},
       {"evaporation", "false", 10, "Heat carried off by metal vapour (Hertz-Knudsen)."},
       {"surface_losses", "false", 100, "Radiation and convection from metal that faces gas."},
       {"cohesion", "true", 10, "Cohesion of [contact]; the strength scales its energy (thesis eq. 6, JKR, DMT)."},
@@ -383,23 +323,46 @@ std::vector<Effect> const& effects() {
       {"wall_friction", "true", 10,
        "Friction at walls of its own, contact.wall_friction; strength 0: walls rub as grains do."},
       {"wall_cohesion", "true", 10, "Cohesion between grains and walls; the strength scales its energy."},
-      {"capillary_bridge", "false", 10,
-       "Liquid bridges between grains that have touched (Willett et al., Langmuir 16 (2000) 9396); the strength scales their volume.",
-       {{"liquid_volume", D::none, {1e-9, 0.05}, "1e-5", "Volume of a bridge over the cube of twice the reduced radius."},
+      {"capillary_bridge",
+       "false",
+       10,
+       "Liquid bridges between grains that have touched (Willett et al., Langmuir 16 (2000) 9396); the strength scales "
+       "their volume.",
+       {{"liquid_volume",
+         D::none,
+         {1e-9, 0.05},
+         "1e-5",
+         "Volume of a bridge over the cube of twice the reduced radius."},
         {"surface_tension", D::surface_energy, {0.01, 2}, "\"0.072 N/m\"", "Surface tension of the liquid."},
         {"contact_angle", D::angle, {0, 1.5}, "\"0 deg\"", "Contact angle of the liquid on the metal."}}},
-      {"electrostatic_charge", "false", 10,
-       "Like charge on all grains: they repel one another and are held by their images in walls (method of images; the air breaks down at 2.65e-5 C/m2).",
+      {"electrostatic_charge",
+       "false",
+       10,
+       "Like charge on all grains: they repel one another and are held by their images in walls (method of images; the "
+       "air breaks down at 2.65e-5 C/m2).",
        {{"charge_density", D::charge_density, {0, 2.65e-5}, "\"2.65e-6 C/m2\"", "Charge on the surface of a grain."}}},
-      {"gas_drag", "false", 10, "Stokes drag of gas at rest on every grain; felt by grains below about 8 um.",
-       {{"viscosity", D::viscosity, {1e-6, 1e-3}, "\"2.2e-5 Pa s\"", "Viscosity of the gas (argon at 300 K: 2.2e-5 Pa s)."}}},
-      {"blade_vibration", "false", 10,
-       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. Manuf. 2021, 102248).",
+      {"gas_drag",
+       "false",
+       10,
+       "Stokes drag of gas at rest on every grain; felt by grains below about 8 um.",
+       {{"viscosity",
+         D::viscosity,
+         {1e-6, 1e-3},
+         "\"2.2e-5 Pa s\"",
+         "Viscosity of the gas (argon at 300 K: 2.2e-5 Pa s)."}}},
+      {"blade_vibration",
+       "false",
+       10,
+       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. "
+       "Manuf. 2021, 102248).",
        {{"amplitude", D::length, {0, 1e-4}, "\"2 um\"", "Amplitude of the recoater's vibration."},
         {"frequency", D::frequency, {1, 1e5}, "\"500 Hz\"", "Frequency of the recoater's vibration."}}},
       {"blade_compliance", "false", 100,
-       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides the stiffness (Penny et al., arXiv 2209.04320)."},
-      {"fines", "false", 10,
+       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides "
+       "the stiffness (Penny et al., arXiv 2209.04320)."},
+      {"fines",
+       "false",
+       10,
        "Grains finer than the size distribution, mixed in by mass (sieving and laser sizing cut them off).",
        {{"mass_fraction", D::none, {0, 0.5}, "0.02", "Share of the powder's mass that is fines."},
         {"diameter", D::length, {1e-6, 5e-5}, "\"8 um\"", "Diameter of the fines."}}},
@@ -433,7 +396,7 @@ std::vector<CaseKey> const& case_schema() {
   static std::vector<CaseKey> const schema = [] {
     std::vector<CaseKey> rows;
     for (auto const part : {powder_rows, rows_of_names, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows,
-                            effect_rows, material_rows}) {
+                            absorb_rows, effect_rows, material_rows}) {
       for (CaseKey& row : part()) rows.push_back(std::move(row));
     }
     return rows;
@@ -442,13 +405,20 @@ std::vector<CaseKey> const& case_schema() {
 }
 
 bool is_needed(CaseKey const& row, Case const& c) {
-  bool const of_machine = row.table == "machine" || row.table == "heat" || name_of(row) == "powder.particles";
+  bool const counts_grains = name_of(row) == "powder.particles" && c.process == Process::calibrating;
+  bool const of_machine = row.table == "machine" || row.table == "heat" || counts_grains;
   if (of_machine && !c.has_machine()) return false;
+  bool const bed_is_there = c.process == Process::absorbing && c.absorb.bed == AbsorbingBed::file;
+  if (bed_is_there && (row.table == "contact" || (row.table == "powder" && row.key != "material"))) return false;
   switch (row.need) {
     case Need::always:
       return true;
     case Need::with_laser:
       return c.has_laser();
+    case Need::with_light:
+      return c.has_light();
+    case Need::with_spot:
+      return c.has_spot() && c.laser.profile != SpotProfile::file;
     case Need::with_part:
       return c.has_part();
     case Need::with_energy_density:

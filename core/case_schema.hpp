@@ -26,6 +26,8 @@ struct Range {
 enum class Need {
   always,
   with_laser,           ///< unless machine.frozen_zone takes the laser's place or powder is only spread
+  with_light,           ///< with a laser, or for the verb absorb
+  with_spot,            ///< with a laser, or for the verb absorb without optics.uniform_beam
   with_part,            ///< unless powder is only spread
   with_energy_density,  ///< with contact.cohesion "sjkr" or "sjkr2"
   with_surface_energy,  ///< with contact.cohesion "jkr" or "dmt"

@@ -25,10 +25,10 @@ Material in718() {
   m.latent_heat = 210e3;
   m.solidus = 1533, m.liquidus = 1609, m.boiling_point = 3190;
   m.heat_of_vaporisation = 6.4e6, m.molar_mass = 0.0587, m.emissivity = 0.45;
-  m.refractive_index = {2.62, 5.86};
+  m.optical_data = "Ni (Johnson 1974)";
   m.source =
       "Conductivity, specific heat and latent heat: Agazhanov 2019 and Mills 2002; melting range: Mills 2002; boiling "
-      "point and heat of vaporisation: those of nickel within the spread of published models; index: nickel at 1.07 um "
+      "point and heat of vaporisation: those of nickel within the spread of published models; index: nickel's "
       "(no measured alloy value; chromium would absorb more).";
   return m;
 }
@@ -42,11 +42,11 @@ Material in625() {
   m.latent_heat = 290e3;
   m.solidus = 1563, m.liquidus = 1623, m.boiling_point = 3100;
   m.heat_of_vaporisation = 6.46e6, m.molar_mass = 0.0598, m.emissivity = 0.5;
-  m.refractive_index = {2.62, 5.86};
+  m.optical_data = "Ni (Johnson 1974)";
   m.source =
       "Solid: Special Metals data sheet; liquid, latent heat and melting range: Sabau 2020; heat of vaporisation: "
       "GO-MELT; "
-      "emissivity: Lane 2020 (AMMT, effective); index: nickel at 1.07 um.";
+      "emissivity: Lane 2020 (AMMT, effective); index: nickel's.";
   return m;
 }
 
@@ -59,11 +59,11 @@ Material stainless_316l() {
   m.latent_heat = 290e3;
   m.solidus = 1675, m.liquidus = 1708, m.boiling_point = 3090;
   m.heat_of_vaporisation = 7.41e6, m.molar_mass = 0.0558, m.emissivity = 0.35;
-  m.refractive_index = {2.96, 4.01};
+  m.optical_data = "Fe (Johnson 1974)";
   m.source =
       "Density, enthalpy, melting range and liquid conductivity (Wiedemann-Franz): Pichler 2020 (NIST SRM 1155a); "
-      "solid conductivity, boiling point and heat of vaporisation: Kim 1975; index: iron at 1.07 um, Johnson and "
-      "Christy 1974.";
+      "solid conductivity, boiling point and heat of vaporisation: Kim 1975; index: iron's "
+      "(no measured alloy value).";
   return m;
 }
 
@@ -76,11 +76,11 @@ Material ti6al4v() {
   m.latent_heat = 286e3;
   m.solidus = 1877, m.liquidus = 1923, m.boiling_point = 3533;
   m.heat_of_vaporisation = 9.83e6, m.molar_mass = 0.0475, m.emissivity = 0.4;
-  m.refractive_index = {3.47, 4.01};
+  m.optical_data = "Ti (Johnson 1974)";
   m.source =
       "Density, conductivity, specific heat, latent heat and melting range: Mills 2002; heat of vaporisation: "
       "published "
-      "models; index: titanium at 1.07 um, Johnson and Christy 1974.";
+      "models; index: titanium's.";
   return m;
 }
 
@@ -93,11 +93,10 @@ Material alsi10mg() {
   m.latent_heat = 400e3;
   m.solidus = 830, m.liquidus = 867, m.boiling_point = 2743;
   m.heat_of_vaporisation = 10.7e6, m.molar_mass = 0.027, m.emissivity = 0.15;
-  m.refractive_index = {1.37, 10.3};
+  m.optical_data = "Al (Rakic 1995)";
   m.source =
-      "Typical published values of as-built AlSi10Mg; liquid conductivity uncertain by 30 %; index: aluminium at 1.07 "
-      "um, "
-      "Rakic 1998 (real, oxidised surfaces absorb about three times more).";
+      "Typical published values of as-built AlSi10Mg; liquid conductivity uncertain by 30 %; index: "
+      "aluminium's (real, oxidised surfaces absorb about three times more).";
   return m;
 }
 
@@ -110,9 +109,9 @@ Material aluminium() {
   m.latent_heat = 397e3;
   m.solidus = 933.5, m.liquidus = 933.5, m.boiling_point = 2743;
   m.heat_of_vaporisation = 10.9e6, m.molar_mass = 0.02698, m.emissivity = 0.1;
-  m.refractive_index = {1.37, 10.3};
+  m.optical_data = "Al (Rakic 1995)";
   m.source =
-      "Mills 2002 and handbook values; index at 1.07 um: Rakic 1998 (real, oxidised surfaces absorb about three times "
+      "Mills 2002 and handbook values; index of clean metal (real, oxidised surfaces absorb about three times "
       "more).";
   return m;
 }
@@ -126,8 +125,8 @@ Material copper() {
   m.latent_heat = 207e3;
   m.solidus = 1357.8, m.liquidus = 1357.8, m.boiling_point = 2835;
   m.heat_of_vaporisation = 4.73e6, m.molar_mass = 0.06355, m.emissivity = 0.1;
-  m.refractive_index = {0.35, 7.08};
-  m.source = "Mills 2002 and handbook values; index at 1.07 um: Johnson and Christy 1972.";
+  m.optical_data = "Cu (Johnson 1972)";
+  m.source = "Mills 2002 and handbook values; index of annealed films.";
   return m;
 }
 

@@ -26,8 +26,9 @@ struct Material {
   double heat_of_vaporisation = 0;        ///< [J/kg]
   double molar_mass = 0;                  ///< [kg/mol]
   double emissivity = 0;                  ///< [-]
-  std::complex<double> refractive_index;  ///< n + ik at the wavelength named in `source`
-  std::string source;                     ///< where the values come from
+  std::complex<double> refractive_index;  ///< n + ik at the laser's wavelength, at room temperature
+  std::string optical_data;  ///< the set that it comes from (core/optical_constants.hpp); empty: given by hand
+  std::string source;        ///< where the values come from
 };
 
 /// The built-in metals by name, each value with its source in material.cpp.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
 
+#include "coupling/optics_of_case.hpp"
 #include "coupling/scan_path.hpp"
 #include "raytrace/trace.hpp"
 
@@ -85,6 +85,10 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
     source.time.push_back(exposure.stops[s].end_time);
   }
   source.power.resize(exposure.stop_of_stretch.size());
+  if (!checked.laser.absorptivity) {
+    exposure.beam = spot_beam(checked, Vec3::Zero(), checked.laser.power);
+    exposure.optics = optical_set(checked);
+  }
   return exposure;
 }
 
@@ -97,12 +101,17 @@ AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, ray
   if (checked.laser.absorptivity) {
     power = prescribed_absorption(stop, *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
   } else {
-    std::vector<std::complex<double>> const refractive_index{checked.material.refractive_index};
-    raytrace::Beam const beam{stop.centre, stop.power, checked.laser.spot_radius()};
+    raytrace::Beam beam = exposure.beam;
+    beam.centre = stop.centre;
+    beam.power = stop.power;
     // Every position draws its own rays: the errors of the positions are independent.
     std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint64_t>(s);
-    raytrace::TraceSettings const settings{.rays = checked.optics.rays, .seed = checked.seed, .id = id};
-    power = raytrace::trace(scene, beam, refractive_index, 0, cells.grid, settings);
+    raytrace::TraceSettings const settings{.rays = checked.optics.rays,
+                                           .seed = checked.seed,
+                                           .id = id,
+                                           .polarisation = polarisation_of(checked),
+                                           .diffuse_share = diffuse_share(checked)};
+    power = raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings);
   }
   double on_time = 0;
   for (BeamStop const& other : exposure.stops) on_time += other.end_time - other.begin_time;

@@ -9,7 +9,9 @@
 #include "core/heat_source.hpp"
 #include "core/powder_bed.hpp"
 #include "core/triangle_surface.hpp"
+#include "raytrace/beam.hpp"
 #include "raytrace/bed_scene.hpp"
+#include "raytrace/surface.hpp"
 
 namespace layerloop::coupling {
 
@@ -22,6 +24,8 @@ struct BeamStop {
 
 /// One layer's exposure: positions `optics.position_spacing` apart along every track, and what was absorbed there.
 struct Exposure {
+  raytrace::Beam beam;          ///< but for place and power
+  raytrace::OpticalSet optics;  ///< of bed and part; none with laser.absorptivity given
   std::vector<BeamStop> stops;
   std::vector<std::int64_t> stop_of_stretch;  ///< of the source; -1: the beam is off
   HeatSource source;                          ///< powers empty until their stretch has been exposed

@@ -10,7 +10,7 @@
 #include "core/progress.hpp"
 #include "core/statistics.hpp"
 #include "dem/dosing.hpp"
-#include "dem/loose_cloud.hpp"
+#include "dem/settled_plate.hpp"
 
 namespace layerloop::dem {
 namespace {
@@ -29,30 +29,6 @@ double tilt_at(double time, CalibrateSettings const& c) {
 }
 
 Vec3 gravity_at(double tilt) { return standard_gravity * Vec3(std::sin(tilt), 0, -std::cos(tilt)); }
-
-Rig plate_rig(CalibrateSettings const& c) {
-  Rig rig;
-  rig.length = rig.width = c.plate_length;
-  rig.walls.blocks = {{"the plate", -0.1, 0.1, -0.1, 0, 0, 0}};
-  rig.x_range = {-c.plate_length, 2 * c.plate_length};
-  rig.z_range = {-c.plate_length, 0.1};
-  rig.gravity = gravity_at(0);
-  return rig;
-}
-
-PowderBed layer_cloud(Case const& checked) {
-  CalibrateSettings const& c = checked.calibrate;
-  double const area = c.plate_length * c.plate_length;
-  double const volume = static_cast<double>(c.plate_particles) * mean_grain_volume(checked.powder);
-  PowderBed bed;
-  add_loose_cloud(bed, checked,
-                  {.low = Vec3::Zero(),
-                   .high = {c.plate_length, c.plate_length, volume / (c.cloud_density * area)},
-                   .period_x = c.plate_length,
-                   .period_y = c.plate_length},
-                  c.plate_particles, 0, c.fall_speed);
-  return bed;
-}
 
 /// Mean speed and mean way along x from one bed to the next.
 void sample(TiltingPlate& plate, double time, double tilt, PowderBed const& before, PowderBed const& now,
@@ -111,8 +87,8 @@ TiltingPlate tilting_plate(Case const& checked, Motion const& motion, Communicat
   Motion awake = motion;
   awake.grains_sleep = false;  // gravity turns under grains that lie still
   awake.keeps_energy_ledger = false;
-  Simulation simulation(awake, plate_rig(c), communicator);
-  simulation.scatter(layer_cloud(checked));
+  Simulation simulation(awake, plate_rig(c.plate_length), communicator);
+  simulation.scatter(cloud_over_plate(checked, c.plate_length, c.plate_particles));
   bool const shown = show_progress && communicator.is_root();
   settle(simulation, c.settling_time, "layer", shown);
 

@@ -168,7 +168,8 @@ TEST(CaseFile, BedTakesTheFeedsPlaceAndIsSeenFromTheCase) {
 TEST(CaseFile, ResolvedCaseHoldsEveryKey) {
   std::string const resolved = resolved_toml(read_case(
       example, {"laser.absorptivity=0.4", "optics.refractive_index=[3, 5]", "machine.frozen_zone=[6e-4, 8e-4]",
-                "machine.blade_friction=0.3", "contact.surface_energy=0.001", "laser.spot_definition=FWHM"}));
+                "machine.blade_friction=0.3", "contact.surface_energy=0.001", "laser.spot_definition=FWHM",
+                "optics.grey_reflectance=0.5", "optics.oxide_index=[1.75, 0]", "laser.rayleigh_length=2 mm"}));
   for (CaseKey const& row : case_schema()) {
     if (is_of_names(row)) continue;  // only with names
     EXPECT_NE(resolved.find("\n" + row.key + " = "), std::string::npos) << name_of(row);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 
+#include "core/optical_constants.hpp"
 #include "coupling/exposure.hpp"
 #include "coupling/melt_surface.hpp"
 #include "coupling/part_surface_cgal.hpp"
@@ -34,6 +35,7 @@ struct TrackOnPowder {
     checked.heat.powder_contact_conductivity = 0.3;
     checked.laser.spot_diameter = 60 * um;
     checked.laser.wavelength = 1070e-9;
+    checked.material.refractive_index = optical_data(checked.material.optical_data)(checked.laser.wavelength);
     checked.optics.rays = 4000;
     checked.optics.position_spacing = 15 * um;
     checked.scan.kind = ScanKind::track;
