@@ -93,7 +93,8 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
 }
 
 AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene,
-                                    CellContent const& cells, Case const& checked, std::int32_t layer) {
+                                    CellContent const& cells, Case const& checked, std::int32_t layer,
+                                    Communicator const& comm) {
   AbsorbedPower& power = exposure.source.power[stretch];
   std::int64_t const s = exposure.stop_of_stretch[stretch];
   if (s < 0) return power;
@@ -111,7 +112,7 @@ AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, ray
                                            .id = id,
                                            .polarisation = polarisation_of(checked),
                                            .diffuse_share = diffuse_share(checked)};
-    power = raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings);
+    power = raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings, &comm);
   }
   double on_time = 0;
   for (BeamStop const& other : exposure.stops) on_time += other.end_time - other.begin_time;

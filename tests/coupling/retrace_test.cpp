@@ -69,7 +69,7 @@ struct TrackOnPowder {
     auto const now = [&](std::size_t stretch, std::vector<char> const& melted) {
       if (retrace) surface.update(melted);
       molten = static_cast<double>(std::ranges::count(melted, 1));
-      return expose_stretch(exposure, stretch, surface.scene(), cells, checked, 1);
+      return expose_stretch(exposure, stretch, surface.scene(), cells, checked, 1, comm);
     };
     thermal::expose(cells, exposure.source, checked, comm, thermal::Report::silent, now);
     EXPECT_LT(exposure.worst_ray_energy_error, 1e-12);
