@@ -20,8 +20,8 @@ READINGS = {
     "eq. 6 and total force": ["contact.wall_cohesion_area=eq6", "contact.coulomb_on=total"],
     "wall friction 0.9": ["contact.wall_friction=0.9"],
     "rolling friction 0.3": ["contact.rolling_friction=0.3"],
-    "poured in 3 batches over half of the base": ["calibrate.batches=3", "calibrate.cloud_width=0.5"],
-    "poured gently: 10 batches over a third of the base": ["calibrate.batches=10", "calibrate.cloud_width=0.33", "calibrate.fall_speed=0", "calibrate.cloud_density=0.3"],
+    "poured in 10 batches over a third of the base": ["calibrate.batches=10", "calibrate.cloud_width=0.33"],
+    "the same, wall cohesion by eq. 6": ["calibrate.batches=10", "calibrate.cloud_width=0.33", "contact.wall_cohesion_area=eq6"],
     "layer tilted after 3 ms": ["calibrate.settling_time=3 ms"],
     "wall friction 0.9, rolling friction 0.3": ["contact.wall_friction=0.9", "contact.rolling_friction=0.3"],
 }

@@ -95,7 +95,7 @@ double bond_number(double radius, double density, ContactSettings const& contact
   if (has_energy_density(contact)) pull_off = 16 * pi * pi * pi / 3 * k * k * k * R * R / (E * E);
   if (contact.cohesion == Cohesion::dmt) pull_off = 2 * pi * work * R;
   if (contact.cohesion == Cohesion::jkr) pull_off = 1.5 * pi * work * R;
-  return pull_off / (grain_mass(radius, density) * 9.81);
+  return pull_off / (grain_mass(radius, density) * standard_gravity);
 }
 
 double reach_gap(ContactLaw const& law, double reduced_radius) {

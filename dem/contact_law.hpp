@@ -67,6 +67,8 @@ struct Body {
   double youngs_modulus, poisson_ratio;
 };
 
+inline constexpr double standard_gravity = 9.81;  ///< [m/s^2]
+
 /// That of the materials in these settings.
 Body body_of(ContactSettings const& contact);
 

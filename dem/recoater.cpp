@@ -17,6 +17,8 @@
 namespace layerloop::dem {
 namespace {
 constexpr double longest_settling = 1.5e-3;  // after the stroke [s]
+constexpr double longest_flight = 15e-3;     // of a grain that the blade has thrown up by a millimetre [s]
+constexpr double flying = 10e-3;             // [m/s]: grains that roll out are slower
 constexpr std::int64_t steps_between_progress = 1000;
 constexpr double frame_distance = 50e-6;  // of the stroke between two looks of a StrokeWatch [m]
 
@@ -71,6 +73,17 @@ void clear_platforms(PowderBed& bed, Case const& checked) {
     keep[i] = bed.x[i] >= 0 && bed.x[i] <= checked.machine.deposition_end() && !in_the_way;
   }
   bed.retain(keep);
+}
+
+/// Advances until no grain has been in flight for longer than one is slow at the top of its flight, 2 v/g.
+void let_land(Simulation& simulation) {
+  constexpr std::int64_t steps_between_checks = 1000;
+  double const end = simulation.time() + longest_flight;
+  double last_seen = simulation.time();
+  while (simulation.time() < end && simulation.time() - last_seen < 2 * flying / standard_gravity) {
+    simulation.advance(steps_between_checks);
+    if (simulation.count_faster_than(flying) > 0) last_seen = simulation.time();
+  }
 }
 
 void note(SpreadOutcome& outcome, Simulation const& simulation) {
@@ -137,6 +150,7 @@ SpreadOutcome spread(PowderBed& bed, Case const& checked, TriangleSurface const&
   Simulation rest(motion, machine_rig(checked, substrate, bed, Tools::none), communicator);
   rest.scatter(bed);
   settle(rest, longest_settling, "settle", show_progress && communicator.is_root());
+  let_land(rest);
   bed = rest.gather();
   if (checked.run.energy_ledger) outcome.energy += rest.energy();
   clear_platforms(bed, checked);

@@ -9,8 +9,6 @@
 namespace layerloop::dem {
 namespace {
 
-constexpr double standard_gravity = 9.81;  // [m/s^2]
-
 /// Of a cloud of the case's density [m].
 double cloud_height(Case const& checked, double period, std::int64_t grains) {
   double const volume = static_cast<double>(grains) * mean_grain_volume(checked.powder);

@@ -32,7 +32,7 @@ struct Rig {
   std::array<double, 2> x_range{-1, 1}, z_range{-1, 1};     ///< a centre beyond them is a lost grain [m]
   /// Grains whose centre passes these are taken out: overflow [m]
   double sink_x = std::numeric_limits<double>::infinity(), sink_z = std::numeric_limits<double>::infinity();
-  Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
+  Vec3 gravity{0, 0, -standard_gravity};  ///< [m/s^2]
 };
 
 inline constexpr double fastest_grain = 1000;  ///< [m/s]: nothing in a recoater moves like that

@@ -15,7 +15,6 @@
 namespace layerloop::dem {
 namespace {
 using std::numbers::pi;
-constexpr double standard_gravity = 9.81;           // [m/s^2]
 constexpr double slow = 5e-3, fast = 20e-3;         // bounds of the slip that is evaluated [m/s]
 constexpr std::size_t parts = 4;                    // of the slip, for its uncertainty
 constexpr std::int64_t steps_between_turns = 1000;  // of gravity: 0.05 degrees at 1.4 degrees a millisecond

@@ -42,9 +42,21 @@ def plots(found, folder):
     for name, words in (("metals_thin", "1 diameter (solid)"), ("metals_deep", "4 diameters (solid)")):
         series.append((words, sorted((flat(index), a, u) for _, index, a, u in found[name])))
     svg.plot(folder / "metals.svg", series, "absorptivity of the flat metal at normal incidence", "absorptivity of powder")
+    svg.plot(folder / "track.svg", [("here, traced on what has melted", [row[:3] for row in found["track"]]),
+                                    ("here, traced on the powder as it lay",
+                                     [(row[0], *found["track_as_spread"]) for row in found["track"]]),
+                                    ("Trapp et al. 2017, calorimetry", [r for r in trapp_powder() if r[0] < 140])],
+             "power [W], 1.5 m/s, spot 60 um (1/e2)", "absorptivity over the track")
     svg.plot(folder / "oxide.svg", [("powder", [row[:3] for row in found["oxide"]]),
                                     ("flat, normal incidence", [(r[0], r[3], 0) for r in found["oxide"]])],
              "thickness of Al2O3 on aluminium [nm]", "absorptivity")
+
+
+def trapp_powder():
+    """Trapp et al. 2017, 100 um of 316L powder at 1500 mm/s."""
+    with open(HERE / "trapp_powder.csv") as file:
+        return [(float(r["power [W]"]), float(r["absorptivity"]), 0.0)
+                for r in csv.DictReader(row for row in file if not row.startswith("#"))]
 
 
 def fill(found):
@@ -93,6 +105,8 @@ def fill(found):
                               [(name, *(f"{a:.4f}" for a, _ in row)) for name, row in found["temperatures"].items()]),
         "mixture": table(("of the light", "share"), [(name, pm(*share, 4)) for name, share in found["mixture"].items()]),
         "oxide": table(("Al2O3 [nm]", "flat", "powder"), [(r[0], f"{r[3]:.4f}", pm(r[1], r[2], 4)) for r in oxide]),
+        "track": table(("power [W]", "absorptivity over the track"), [(r[0], pm(r[1], r[2])) for r in found["track"]]),
+        "track_as_spread": pm(*found["track_as_spread"]),
         "rough": pm(*found["rough"], 4), "deep": pm(deep[1], deep[2], 4), "thin": pm(thin[1], thin[2], 4),
         "loosest": f"{loosest[1]:.4f} at {loosest[0]:.3f} ({loosest[3]})",
         "densest": f"{densest[1]:.4f} at {densest[0]:.3f} ({densest[3]})",

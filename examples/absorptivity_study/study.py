@@ -19,6 +19,7 @@ HERE = pathlib.Path(__file__).parent
 DIAMETER = 30.0  # of the plain powder [um]
 SIDE = 300.0  # of the plate [um]
 THICKNESSES = [0.25, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0]  # solid, in grain diameters
+POWERS = [10, 20, 30, 45, 60, 80, 100]  # of the tracks [W]
 METALS = ["Fe (Johnson 1974)", "Ti (Johnson 1974)", "Ni (Johnson 1974)", "Cr (Johnson 1974)", "Mo (Ordal 1988)",
           "W (Weaver 1975)", "Ta (Ordal 1988)", "Al (Rakic 1995)", "Cu (Ordal 1985)", "Cu (Johnson 1972)",
           "Cu (Babar 2015)", "Au (Babar 2015)", "Ag (Babar 2015)"]
@@ -56,10 +57,40 @@ class Study:
         return self.absorb(name, [*files, *arguments], {"run.pictures": "false", **(settings or {})})
 
 
+    def track(self, bed, power, retrace=True):
+        """A track over a bed that lies ready, by the layer loop; absorptivity over the track."""
+        name = f"track_{bed.stem}_{power}W{'' if retrace else '_as_spread'}"
+        folder = self.out / name
+        if not (folder / "summary.json").exists():
+            ready = self.out / f"ready_{bed.stem}.csv"
+            write_ready(bed, ready)
+            subprocess.run([self.program, "run", HERE / "track.toml", "-o", folder, "--quiet", "--set", f"powder.bed={ready.resolve()}",
+                            "--set", f"laser.power={power} W", "--set", f"optics.retrace={str(retrace).lower()}"], check=True)
+        return json.loads((folder / "summary.json").read_text())["layers"][0]["absorptivity"]
+
+
+def write_ready(bed, ready):
+    """A settled bed where the machine of track.toml has its plate; grains that reach over an end are left out."""
+    begin, length = 150e-6, 400e-6
+    lines = ["# units=m", "# x,y,z,radius,material"]
+    for line in bed.read_text().splitlines()[2:]:
+        x, y, z, radius, material = line.split(",")
+        if float(radius) <= float(x) <= length - float(radius):
+            lines.append(f"{float(x) + begin!r},{y},{z},{radius},{material}")
+    ready.write_text("\n".join(lines) + "\n")
+
+
 def grains(solid, side, diameters=(DIAMETER,), fractions=(1,)):
     """Number of grains of these sizes (fractions by volume) that make a solid layer so thick [um]."""
     volume = solid * side * side
     return round(sum(f * volume / (math.pi / 6 * d**3) for d, f in zip(diameters, fractions)))
+
+
+def mean(values):
+    """Mean of five beds, and half its 95 % interval."""
+    m = sum(values) / len(values)
+    sd = math.sqrt(sum((v - m) ** 2 for v in values) / (len(values) - 1))
+    return m, 2.776 * sd / math.sqrt(len(values))
 
 
 def figure(summary):
@@ -127,6 +158,10 @@ def run(study):
         results["oxide"].append((film, *figure(s), s["materials"]["Al"]["flat_absorptivity"]))
     rough = study.relight("rough", "thickness_4.0", settings={"optics.diffuse_share": 1})
     results["rough"] = figure(rough)
+    study.settle("track_beds", grains(2 * DIAMETER, 400), 400)
+    beds = sorted((study.out / "track_beds").glob("bed_*.csv"))
+    results["track"] = [(p, *mean([study.track(bed, p) for bed in beds])) for p in POWERS]
+    results["track_as_spread"] = mean([study.track(bed, POWERS[0], retrace=False) for bed in beds])
     return results
 
 

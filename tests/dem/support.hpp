@@ -9,7 +9,6 @@
 namespace layerloop::dem::test {
 
 inline constexpr double density = 8190;
-inline constexpr double standard_gravity = 9.81;
 
 /// A run of one rank.
 inline Communicator alone() { return Communicator(MPI_COMM_SELF); }
