@@ -12,7 +12,16 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-CASE = '[case]\nname = "thesis calibration"\npreset = "thesis"\n\n[calibrate]\ntilt_from = "30 deg"\n'
+CASE = """[case]
+name = "thesis calibration"
+preset = "thesis"
+
+[contact]
+wall_cohesion_area = "liggghts"
+
+[calibrate]
+tilt_from = "30 deg"
+"""
 READINGS = {
     "reference: walls as LIGGGHTS, friction on the repulsive force": [],
     "wall cohesion by eq. 6": ["contact.wall_cohesion_area=eq6"],

@@ -474,6 +474,7 @@ std::string preset_value(std::string const& preset, std::string const& table, st
       {"thesis", "powder", "fractions", "[0.2, 0.2, 0.5, 0.1]"},
       {"thesis", "contact", "youngs_modulus", "\"0.2 GPa\""},
       {"thesis", "contact", "poisson_ratio", "0.3"},
+      {"thesis", "contact", "wall_cohesion_area", "\"eq6\""},
       {"thesis", "contact", "restitution", "0.7"},
       {"thesis", "contact", "sliding_friction", "0.7"},
       {"thesis", "contact", "rolling_friction", "0.15"},
