@@ -89,7 +89,9 @@ class LayerLoop(unittest.TestCase):
     def test_layers_are_plausible(self):
         self.assertEqual(len(self.summary["layers"]), 2)
         for layer in self.summary["layers"]:
-            self.assertTrue(0.2 < layer["volume_fraction_real"] < 0.81)  # 0.8: separate grains of one size
+            # separate grains on a flat plate have 0.8, whatever their sizes; beside a part that rises they may have more,
+            # but what lies between the old surface and the new one can never exceed the room there
+            self.assertTrue(0.2 < layer["volume_fraction_real"] < (0.81 if layer["layer"] == 1 else 1))
             self.assertTrue(0 < layer["surface_coverage"] <= 1)
             self.assertTrue(0.2 < layer["absorptivity"] < 1)
             self.assertTrue(0 < layer["absorptivity_u_num"] < 0.05)
