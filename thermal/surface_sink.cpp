@@ -20,8 +20,8 @@ SurfaceSink::Flux SurfaceSink::flux(EnthalpyTable const& table, double h) const 
 
 namespace {
 
-/// Share of itself by which a flux may fall within a step for one step of Newton's method to do: what is left out is the
-/// square of it.
+/// Share of itself by which a flux may fall within a step for one step of Newton's method to do: what is left out is
+/// the square of it.
 constexpr double not_stiff = 1e-3;
 
 /// Root of h + rate q(T(h)) = start. \param rate  dt area / volume [s/m]

@@ -15,10 +15,9 @@ class HeatedBlock {
       : table(metal, 298, top),
         cells(make_heat_cells(content, side_y)),
         grid(cells.grid, side_y == SideY::periodic, Communicator()),
-        system(make_heat_system(table, grid,
-                                make_conduction(cells, grid.box(), far, metal.conductivity(metal.solidus),
-                                                contact_conductivity),
-                                {})) {}
+        system(make_heat_system(
+            table, grid,
+            make_conduction(cells, grid.box(), far, metal.conductivity(metal.solidus), contact_conductivity), {})) {}
 
   std::int64_t local(std::int32_t i, std::int32_t j, std::int32_t k) const { return grid.box().index(i, j, k); }
   double& enthalpy(std::int32_t i, std::int32_t j, std::int32_t k) {

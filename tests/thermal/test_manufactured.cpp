@@ -32,8 +32,8 @@ struct Manufactured {
     double const sx = std::sin(p * at.x()), sy = std::sin(2 * p * at.y()), sz = std::sin(p * at.z());
     double const now = theta(at, t), amplitude = rise * growth * p;
     double const laplacian = -6 * p * amplitude * cx * cy * cz;
-    double const gradient2 = amplitude * amplitude *
-                             (std::pow(sx * cy * cz, 2) + 4 * std::pow(cx * sy * cz, 2) + std::pow(cx * cy * sz, 2));
+    double const gradient2 =
+        amplitude * amplitude * (std::pow(sx * cy * cz, 2) + 4 * std::pow(cx * sy * cz, 2) + std::pow(cx * cy * sz, 2));
     return density * c0 * (1 + bend_c * now) * now / growth / tau -
            k0 * ((1 + bend_k * now) * laplacian + bend_k * gradient2);
   }

@@ -77,8 +77,8 @@ TEST(Stefan, OnePhaseFront) {
   }
 }
 
-/// Two phases that differ in k and cp (the table takes both as steps at the melting point), wall at 2800 K, cold metal at
-/// 298 K: the front is at 2 lambda sqrt(a_liquid t), lambda = .442582698, 13.555180 um after 50 us.
+/// Two phases that differ in k and cp (the table takes both as steps at the melting point), wall at 2800 K, cold metal
+/// at 298 K: the front is at 2 lambda sqrt(a_liquid t), lambda = .442582698, 13.555180 um after 50 us.
 Material two_phase_metal() {
   Material metal = constant_metal(24, 7300, 640);
   metal.solidus = metal.liquidus = 1691.5;
