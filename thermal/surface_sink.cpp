@@ -20,12 +20,13 @@ SurfaceSink::Flux SurfaceSink::flux(EnthalpyTable const& table, double h) const 
 
 namespace {
 
-/// Share of itself by which a flux may fall within a step for forward Euler to do.
+/// Share of itself by which a flux may fall within a step for one step of Newton's method to do: what is left out is
+/// the square of it.
 constexpr double not_stiff = 1e-3;
 
 /// Root of h + rate q(T(h)) = start. \param rate  dt area / volume [s/m]
 double drained(SurfaceSink const& sink, EnthalpyTable const& table, double rate, double start) {
-  double low = start - rate * std::max(0.0, sink.flux(table, start).total()), high = start;
+  double low = std::min(start, 0.0), high = start;  // nothing is given off at ambient
   double h = start;
   for (int iteration = 0; iteration < 100; ++iteration) {
     auto const flux = sink.flux(table, h);
@@ -54,8 +55,9 @@ void drain(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<d
     auto flux = sink.flux(table, h);
     if (flux.total() == 0) continue;
     double const before = h, rate = dt * open.area / open.metal_volume;
-    if (rate * flux.slope * table.temperature_slope(h) < not_stiff) {
-      h -= rate * flux.total();
+    double const stiffness = rate * flux.slope * table.temperature_slope(h);
+    if (std::abs(stiffness) < not_stiff) {
+      h -= rate * flux.total() / (1 + stiffness);
     } else {
       h = drained(sink, table, rate, before);
       flux = sink.flux(table, h);
