@@ -5,6 +5,7 @@
 #include "apps/verbs.hpp"
 #include "core/case_file.hpp"
 #include "core/communicator.hpp"
+#include "core/material_table.hpp"
 #include "coupling/cost.hpp"
 #include "coupling/solid_on_plate.hpp"
 
@@ -27,14 +28,15 @@ void print_cost(Case const& checked, std::filesystem::path const& case_file) {
 void add_check(CLI::App& program, Action& chosen) {
   CLI::App* verb = program.add_subcommand("check", "is the case good, and what will it cost?");
   auto const from = std::make_shared<CaseOptions>();
-  auto const help_case = std::make_shared<bool>(false);
+  auto const help_case = std::make_shared<bool>(false), help_materials = std::make_shared<bool>(false);
   add_case_options(*verb, *from);
   verb->get_option("case")->required(false);
   verb->add_flag("--help-case", *help_case, "print every case key: unit, range, default and what it means");
+  verb->add_flag("--help-materials", *help_materials, "print every value of the built-in metals with its source");
   verb->callback([=, &chosen] {
-    if (*help_case) {
-      chosen = [] {
-        if (Communicator{}.is_root()) fmt::print("{}", case_key_page());
+    if (*help_case || *help_materials) {
+      chosen = [page = *help_case ? case_key_page : material_page] {
+        if (Communicator{}.is_root()) fmt::print("{}", page());
       };
       return;
     }

@@ -92,6 +92,8 @@ constexpr auto units = std::to_array<Unit>({
     {"g/mol", D::molar_mass, 1e-3L},
     {"Pas", D::viscosity, 1},
     {"mPas", D::viscosity, 1e-3L},
+    {"N/(mK)", D::surface_tension_slope, 1},
+    {"mN/(mK)", D::surface_tension_slope, 1e-3L},
     {"C/m2", D::charge_density, 1},
     {"uC/m2", D::charge_density, 1e-6L},
     {"Hz", D::frequency, 1},
@@ -163,6 +165,8 @@ std::string_view name(Dimension dimension) {
       return "a viscosity";
     case D::charge_density:
       return "a charge per area";
+    case D::surface_tension_slope:
+      return "a surface tension per temperature";
     case D::frequency:
       return "a frequency";
     case D::linear_density:

@@ -26,7 +26,8 @@ enum class Dimension {
   frequency,
   linear_density,
   viscosity,
-  charge_density
+  charge_density,
+  surface_tension_slope
 };
 
 std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty for none

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/note_once.hpp"
 #include "core/progress.hpp"
 #include "thermal/effects/latent_heat.hpp"
 #include "thermal/effects/variable_conductivity.hpp"
@@ -123,6 +124,9 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   pools.write(outcome.melt);
   outcome.peak_temperature = *std::ranges::max_element(outcome.melt.peak_temperature);
   outcome.cells = cells.unknowns;
+  if (report == Report::progress && comm.is_root())
+    for (std::string const& use : uses_beyond_range(metal, settings.ambient_temperature, outcome.peak_temperature))
+      note_once(use);
   return outcome;
 }
 
