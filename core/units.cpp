@@ -92,6 +92,7 @@ constexpr auto units = std::to_array<Unit>({
     {"g/mol", D::molar_mass, 1e-3L},
     {"Pas", D::viscosity, 1},
     {"mPas", D::viscosity, 1e-3L},
+    {"N/(m K)", D::surface_tension_slope, 1},
     {"N/(mK)", D::surface_tension_slope, 1},
     {"mN/(mK)", D::surface_tension_slope, 1e-3L},
     {"C/m2", D::charge_density, 1},
