@@ -54,19 +54,22 @@ class Slab {
     return values.data() - conduction_.box.index(-1, -1, k);  // so that local cell indices fit
   }
 
+  double* row_balance() { return balance_.data() - row_begin_; }  ///< so that local cell indices fit
+
   void look_up(int k, std::vector<double>& values);
   void advance_row(std::size_t r, int k);
-  void balance_row(Row const& row, Row const& uniform, int k);
+  double advance_uniform(Row const& uniform, int k);
+  void balance_faces(Row const& part, int k);
   void add_single_flows(Row const& row, double const* theta);
-  void heat_row(Row const& row, Row const& uniform);
-  void record_row(Row const& row);
+  void heat(Row const& part);
 
   HeatSystem& system_;
   Conduction const& conduction_;
   double dt_;
   int begin_, end_;
   std::array<std::vector<double>, 4>& theta_;  ///< three planes in turn, and the one above the slab
-  std::vector<double> balance_;                ///< of one row [W/m]
+  std::int64_t row_begin_ = 0;
+  std::vector<double> balance_;  ///< of one row [W/m]
   std::vector<ContactFace>::const_iterator contact_;
   std::vector<FarFace>::const_iterator far_;
   std::span<CellPower const>::iterator source_, source_end_;
@@ -88,49 +91,71 @@ void Slab::look_up(int k, std::vector<double>& values) {
   }
 }
 
+/// Inside the uniform stretch there are neither contacts nor open cells nor far faces; a source there sends the whole
+/// row down the general way, which leaves the same bits.
 void Slab::advance_row(std::size_t r, int k) {
-  Row const &row = conduction_.rows[r], &uniform = conduction_.uniform[r];
-  balance_row(row, uniform, k);
+  Row const& row = conduction_.rows[r];
+  Row uniform = conduction_.uniform[r];
+  row_begin_ = row.begin;
+  auto const inside = std::find_if(source_, source_end_, [&](auto const& s) { return s.cell >= uniform.begin; });
+  if (inside != source_end_ && inside->cell < uniform.end) uniform = {row.begin, row.begin};
+  std::array<Row, 2> const rest{Row{row.begin, uniform.begin}, Row{uniform.end, row.end}};
+  double hottest = advance_uniform(uniform, k);
+  for (Row const& part : rest) balance_faces(part, k);
   add_single_flows(row, theta_of(k));
-  heat_row(row, uniform);
+  for (Row const& part : rest) heat(part);
   for (; open_ != system_.sink.cells.end() && open_->cell < row.end; ++open_) {
     drain(system_.sink, *open_, system_.table, dt_, system_.enthalpy[static_cast<std::size_t>(open_->cell)]);
   }
-  record_row(row);
+  for (Row const& part : rest) hottest = std::max(hottest, record_peak(system_, part));
+  if (hottest >= system_.table.liquidus()) record_liquid(system_, row, dt_, newly_melted);
 }
 
-/// The six flows are added in pairs, in one order for every cell: results depend neither on the ranks nor, mirrored, on
-/// the side. Shares of one leave the same bits when they are left out.
-void Slab::balance_row(Row const& row, Row const& uniform, int k) {
-  float const* const gx = conduction_.share_x.data();
-  float const* const gy = conduction_.share_y.data();
-  float const* const gz = conduction_.share_z.data();
+/// Full cells between whole faces, in one loop. Returns their largest enthalpy [J/m^3].
+double Slab::advance_uniform(Row const& uniform, int k) {
   double const *const below = theta_of(k - 1), *const here = theta_of(k), *const above = theta_of(k + 1);
   std::int64_t const sy = conduction_.box.stride_y(), sz = conduction_.box.stride_z();
-  double* __restrict const balance = balance_.data() - row.begin;
-  for (Row const& part : {Row{row.begin, uniform.begin}, Row{uniform.end, row.end}}) {
-#pragma omp simd
-    for (std::int64_t c = part.begin; c < part.end; ++c) {
-      double const t = here[c];
-      double const along_x = gx[c - 1] * (here[c - 1] - t) + gx[c] * (here[c + 1] - t);
-      double const along_y = gy[c - sy] * (here[c - sy] - t) + gy[c] * (here[c + sy] - t);
-      double const along_z = gz[c - sz] * (below[c - sz] - t) + gz[c] * (above[c + sz] - t);
-      balance[c] = along_x + along_y + along_z;
-    }
-  }
-#pragma omp simd
+  double* __restrict const h = system_.enthalpy.data();
+  float* __restrict const peak = system_.peak.data();
+  double const full = dt_ * conduction_.full_capacity();
+  double hottest = 0;
+#pragma omp simd reduction(max : hottest)
   for (std::int64_t c = uniform.begin; c < uniform.end; ++c) {
     double const t = here[c];
     double const along_x = (here[c - 1] - t) + (here[c + 1] - t);
     double const along_y = (here[c - sy] - t) + (here[c + sy] - t);
     double const along_z = (below[c - sz] - t) + (above[c + sz] - t);
+    double const now = h[c] + full * (along_x + along_y + along_z);
+    float const single = static_cast<float>(now);
+    h[c] = now;
+    peak[c] = single > peak[c] ? single : peak[c];
+    hottest = now > hottest ? now : hottest;
+  }
+  return hottest;
+}
+
+/// The six flows are added in pairs, in one order for every cell: results depend neither on the ranks nor, mirrored, on
+/// the side. Where shares are one they may be left out: the bits are the same.
+void Slab::balance_faces(Row const& part, int k) {
+  float const* const gx = conduction_.share_x.data();
+  float const* const gy = conduction_.share_y.data();
+  float const* const gz = conduction_.share_z.data();
+  double const *const below = theta_of(k - 1), *const here = theta_of(k), *const above = theta_of(k + 1);
+  std::int64_t const sy = conduction_.box.stride_y(), sz = conduction_.box.stride_z();
+  double* __restrict const balance = row_balance();
+#pragma omp simd
+  for (std::int64_t c = part.begin; c < part.end; ++c) {
+    double const t = here[c];
+    double const along_x = gx[c - 1] * (here[c - 1] - t) + gx[c] * (here[c + 1] - t);
+    double const along_y = gy[c - sy] * (here[c - sy] - t) + gy[c] * (here[c + sy] - t);
+    double const along_z = gz[c - sz] * (below[c - sz] - t) + gz[c] * (above[c + sz] - t);
     balance[c] = along_x + along_y + along_z;
   }
 }
 
 /// Contacts, far field and source, cell by cell.
 void Slab::add_single_flows(Row const& row, double const* theta) {
-  double* const balance = balance_.data() - row.begin;
+  double* const balance = row_balance();
   for (; contact_ != conduction_.contacts.end() && contact_->cell < row.end; ++contact_) {
     balance[contact_->cell] +=
         system_.scratch.contact_flow[static_cast<std::size_t>(contact_ - conduction_.contacts.begin())];
@@ -145,21 +170,12 @@ void Slab::add_single_flows(Row const& row, double const* theta) {
   }
 }
 
-void Slab::heat_row(Row const& row, Row const& uniform) {
+void Slab::heat(Row const& part) {
   double* __restrict const h = system_.enthalpy.data();
-  double const* const balance = balance_.data() - row.begin;
+  double const* const balance = row_balance();
   double const* const per_capacity = conduction_.per_capacity.data();
-  for (Row const& part : {Row{row.begin, uniform.begin}, Row{uniform.end, row.end}}) {
 #pragma omp simd
-    for (std::int64_t c = part.begin; c < part.end; ++c) h[c] += dt_ * per_capacity[c] * balance[c];
-  }
-  double const full = dt_ * conduction_.full_capacity();
-#pragma omp simd
-  for (std::int64_t c = uniform.begin; c < uniform.end; ++c) h[c] += full * balance[c];
-}
-
-void Slab::record_row(Row const& row) {
-  if (record_peak(system_, row) >= system_.table.liquidus()) record_liquid(system_, row, dt_, newly_melted);
+  for (std::int64_t c = part.begin; c < part.end; ++c) h[c] += dt_ * per_capacity[c] * balance[c];
 }
 
 /// Flow through every contact [W/m], from the enthalpies before the step.
