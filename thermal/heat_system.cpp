@@ -28,7 +28,7 @@ double record_peak(HeatSystem& system, Row const& row) {
   double const* const h = system.enthalpy.data();
   float* __restrict const peak = system.peak.data();
   double largest = 0;
-#pragma omp simd reduction(max : largest)
+#pragma omp simd reduction(max : largest) if (row.end - row.begin > 8)
   for (std::int64_t c = row.begin; c < row.end; ++c) {
     float const now = static_cast<float>(h[c]);
     peak[c] = now > peak[c] ? now : peak[c];
