@@ -7,8 +7,10 @@
 
 #include "apps/verbs.hpp"
 #include "core/bed_file.hpp"
+#include "core/error.hpp"
 #include "dem/settled_bed_bench.hpp"
 #include "raytrace/ray_bench.hpp"
+#include "thermal/heat_bench.hpp"
 
 namespace layerloop::apps {
 namespace {
@@ -19,6 +21,7 @@ struct BenchOptions {
   int threads = 1;
   std::int64_t rays = 300'000;
   bool uniform = false;
+  std::int64_t cells = 1'000'000;
 };
 
 void bench_dem(BenchOptions const& options) {
@@ -75,6 +78,22 @@ void bench_rays(BenchOptions const& options) {
   fmt::print("{}\n", json.dump(2));
 }
 
+void bench_heat(BenchOptions const& options) {
+  if (Communicator().size() > 1) {
+    throw InputError("bench heat runs on one process (its triad does) leave out mpiexec, and use --threads");
+  }
+  thermal::HeatBench const r = thermal::bench_heat(options.cells, options.steps, options.threads);
+  nlohmann::ordered_json const json{{"cells", r.cells},
+                                    {"steps", r.steps},
+                                    {"threads", r.threads},
+                                    {"cell_updates_per_second", r.cell_updates_per_second},
+                                    {"bytes_per_update", r.bytes_per_update},
+                                    {"triad_bytes_per_second", r.triad_bytes_per_second},
+                                    {"share_of_triad", r.share_of_triad},
+                                    {"liquid_share", r.liquid_share}};
+  fmt::print("{}\n", json.dump(2));
+}
+
 }  // namespace
 
 void add_bench(CLI::App& program, Action& chosen) {
@@ -95,6 +114,12 @@ void add_bench(CLI::App& program, Action& chosen) {
       ->check(CLI::Range(1000, 1'000'000'000));
   rays->add_flag("--uniform", options->uniform, "light over the whole bed instead of a spot of 60 um");
   rays->callback([=, &chosen] { chosen = [=] { bench_rays(*options); }; });
+
+  CLI::App* heat = bench->add_subcommand("heat", "explicit heat steps of a full block, beside a triad");
+  heat->add_option("--cells", options->cells, "cells, about")->check(CLI::Range(27, 1'000'000'000));
+  heat->add_option("--steps", options->steps, "steps of each of seven rounds")->check(CLI::Range(1, 1'000'000'000));
+  heat->add_option("--threads", options->threads, "threads")->check(CLI::Range(1, 1024));
+  heat->callback([=, &chosen] { chosen = [=] { bench_heat(*options); }; });
 }
 
 }  // namespace layerloop::apps

@@ -33,10 +33,11 @@ float shared(Conduction const& conduction, std::int64_t a, std::int64_t b) {
 }
 
 /// Rows of `box` enlarged by `layer` cells, cut to where the metal begins and ends.
-std::vector<Row> rows_with_metal(Conduction const& conduction, std::int32_t layer) {
+std::vector<Row> rows_with_metal(Conduction const& conduction, std::int32_t layer, std::vector<std::size_t>& first) {
   LocalBox const& box = conduction.box;
   std::vector<Row> rows;
   for (std::int32_t k = -layer; k < box.n[2] + layer; ++k) {
+    first.push_back(rows.size());
     for (std::int32_t j = -layer; j < box.n[1] + layer; ++j) {
       Row row{box.index(-layer, j, k), box.index(box.n[0] + layer, j, k)};
       while (row.begin < row.end && conduction.fill[row.begin] == 0) ++row.begin;
@@ -44,7 +45,41 @@ std::vector<Row> rows_with_metal(Conduction const& conduction, std::int32_t laye
       if (row.begin < row.end) rows.push_back(row);
     }
   }
+  first.push_back(rows.size());
   return rows;
+}
+
+/// The longest stretch of a row whose cells are full and joined to all neighbours by whole faces. Melting only joins,
+/// so it stays so.
+Row uniform_stretch(Conduction const& conduction, Row const& row) {
+  std::int64_t const sy = conduction.box.stride_y(), sz = conduction.box.stride_z();
+  auto const is_uniform = [&](std::int64_t c) {
+    return conduction.per_capacity[c] == conduction.full_capacity() && conduction.share_x[c - 1] == 1 &&
+           conduction.share_x[c] == 1 && conduction.share_y[c - sy] == 1 && conduction.share_y[c] == 1 &&
+           conduction.share_z[c - sz] == 1 && conduction.share_z[c] == 1;
+  };
+  Row longest{row.begin, row.begin};
+  for (std::int64_t begin = row.begin; begin < row.end;) {
+    std::int64_t end = begin;
+    while (end < row.end && is_uniform(end)) ++end;
+    if (end - begin > longest.end - longest.begin) longest = {begin, end};
+    begin = std::max(end, begin + 1);
+  }
+  return longest;
+}
+
+std::vector<std::int64_t> neighbours_with_metal(Conduction const& conduction) {
+  LocalBox const& box = conduction.box;
+  std::vector<std::int64_t> cells;
+  for (std::int32_t k = -1; k <= box.n[2]; ++k) {
+    for (std::int32_t j = -1; j <= box.n[1]; ++j) {
+      bool const own_row = k >= 0 && k < box.n[2] && j >= 0 && j < box.n[1];
+      for (std::int32_t i = -1; i <= box.n[0]; i += own_row ? box.n[0] + 1 : 1) {
+        if (conduction.fill[box.index(i, j, k)] > 0) cells.push_back(box.index(i, j, k));
+      }
+    }
+  }
+  return cells;
 }
 
 /// Bodies of all local cells, and the fill that goes with them.
@@ -132,8 +167,10 @@ Conduction make_conduction(HeatCells const& cells, LocalBox const& box, FarField
       }
     }
   }
-  conduction.rows = rows_with_metal(conduction, 0);
-  conduction.rows_with_neighbours = rows_with_metal(conduction, 1);
+  conduction.rows = rows_with_metal(conduction, 0, conduction.first_row);
+  conduction.rows_with_neighbours = rows_with_metal(conduction, 1, conduction.first_row_with_neighbours);
+  for (Row const& row : conduction.rows) conduction.uniform.push_back(uniform_stretch(conduction, row));
+  conduction.neighbours = neighbours_with_metal(conduction);
   return conduction;
 }
 

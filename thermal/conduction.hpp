@@ -52,6 +52,11 @@ struct Conduction {
   std::vector<FarFace> far;
   std::vector<Row> rows;  ///< own cells
   std::vector<Row> rows_with_neighbours;
+  std::vector<std::size_t> first_row, first_row_with_neighbours;  ///< of every plane along z, and the end of the last
+  std::vector<Row> uniform;  ///< within each of `rows`: full cells, joined to all six neighbours by whole faces
+  std::vector<std::int64_t> neighbours;  ///< cells with metal in the neighbours' layer
+
+  double full_capacity() const { return 1 / (cell * cell); }  ///< per_capacity of a full cell [1/m^2]
 
   /// Joins a cell that has just melted with its neighbours.
   void melt(std::int64_t cell);

@@ -32,13 +32,15 @@ class EnthalpyTable {
  private:
   static constexpr std::int32_t intervals = 16384;
 
-  std::int32_t interval(double h) const {
-    return std::clamp(static_cast<std::int32_t>(h * per_step_), std::int32_t{0}, intervals - 1);
+  std::int32_t interval(double h) const {  // std::clamp goes through addresses: loops would not become vectors
+    auto const i = static_cast<std::int32_t>(h * per_step_);
+    std::int32_t const positive = i > 0 ? i : 0;
+    return positive < intervals - 1 ? positive : intervals - 1;
   }
   double interpolate(std::vector<double> const& values, double h) const {
     std::int32_t const i = interval(h);
-    double const* const v = values.data() + i;
-    return v[0] + (h * per_step_ - i) * (v[1] - v[0]);
+    double const* const v = values.data();
+    return v[i] + (h * per_step_ - i) * (v[i + 1] - v[i]);
   }
   double slope(std::vector<double> const& values, double h) const {
     double const* const v = values.data() + interval(h);

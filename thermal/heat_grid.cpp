@@ -20,19 +20,54 @@ HeatGrid::HeatGrid(VoxelGrid const& grid, bool periodic_y, Communicator const& c
                            PETSC_DECIDE, enough_columns ? 1 : PETSC_DECIDE, 1, 1, nullptr, nullptr, nullptr, &da_));
   check_petsc(DMSetUp(da_));
   check_petsc(DMDAGetCorners(da_, &box_.begin[0], &box_.begin[1], &box_.begin[2], &box_.n[0], &box_.n[1], &box_.n[2]));
-  check_petsc(DMCreateLocalVector(da_, &local_));
+  PetscMPIInt const* around;  // 27 ranks, x fastest, this one in the middle; negative: outside
+  check_petsc(DMDAGetNeighbors(da_, &around));
+  int step = 1;
+  for (auto& sides : neighbour_) {
+    for (int const s : {0, 1}) {
+      int const rank = around[13 + (s == 0 ? -step : step)];
+      sides[static_cast<std::size_t>(s)] = rank < 0 ? MPI_PROC_NULL : rank;
+    }
+    step *= 3;
+  }
 }
 
-HeatGrid::~HeatGrid() {
-  VecDestroy(&local_);
-  DMDestroy(&da_);
+HeatGrid::~HeatGrid() { DMDestroy(&da_); }
+
+namespace {
+
+/// Calls f(index) for the own cells' columns of one layer across an axis.
+template <class F>
+void for_layer(LocalBox const& box, std::size_t axis, std::int32_t at, F const& f) {
+  std::array<std::int32_t, 3> first{0, 0, 0}, last = box.n;
+  first[axis] = at, last[axis] = at + 1;
+  for (std::int32_t k = first[2]; k < last[2]; ++k) {
+    for (std::int32_t j = first[1]; j < last[1]; ++j) {
+      for (std::int32_t i = first[0]; i < last[0]; ++i) f(box.index(i, j, k));
+    }
+  }
 }
+
+}  // namespace
 
 void HeatGrid::exchange(std::vector<double>& values) const {
-  check_petsc(VecPlaceArray(local_, values.data()));
-  check_petsc(DMLocalToLocalBegin(da_, local_, INSERT_VALUES, local_));
-  check_petsc(DMLocalToLocalEnd(da_, local_, INSERT_VALUES, local_));
-  check_petsc(VecResetArray(local_));
+  MPI_Comm const comm = PetscObjectComm(reinterpret_cast<PetscObject>(da_));
+  std::vector<double> sent, received;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t side : {0, 1}) {
+      int const to = neighbour_[axis][side], from = neighbour_[axis][1 - side];
+      if (to == MPI_PROC_NULL && from == MPI_PROC_NULL) continue;
+      sent.clear();
+      for_layer(box_, axis, side == 0 ? 0 : box_.n[axis] - 1, [&](std::int64_t c) { sent.push_back(values[c]); });
+      received.resize(sent.size());
+      auto const count = static_cast<int>(sent.size());
+      MPI_Sendrecv(sent.data(), count, MPI_DOUBLE, to, 0, received.data(), count, MPI_DOUBLE, from, 0, comm,
+                   MPI_STATUS_IGNORE);
+      if (from == MPI_PROC_NULL) continue;
+      auto next = received.begin();
+      for_layer(box_, axis, side == 0 ? box_.n[axis] : -1, [&](std::int64_t c) { values[c] = *next++; });
+    }
+  }
 }
 
 }  // namespace layerloop::thermal

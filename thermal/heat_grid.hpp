@@ -7,7 +7,6 @@
 #include "core/voxel_grid.hpp"
 
 struct _p_DM;
-struct _p_Vec;
 
 namespace layerloop::thermal {
 
@@ -39,13 +38,14 @@ class HeatGrid {
   LocalBox const& box() const { return box_; }
   _p_DM* petsc() const { return da_; }
 
-  /// Refreshes the neighbours' layer from its owners. Shape: box().size(). \note Collective
+  /// Refreshes the faces of the neighbours' layer from their owners (edges and corners are nobody's neighbours). Shape:
+  /// box().size(). \note Collective
   void exchange(std::vector<double>& values) const;
 
  private:
   _p_DM* da_ = nullptr;
-  _p_Vec* local_ = nullptr;
   LocalBox box_;
+  std::array<std::array<int, 2>, 3> neighbour_{};  ///< ranks below and above along each axis
 };
 
 }  // namespace layerloop::thermal

@@ -20,18 +20,16 @@ HeatSystem make_heat_system(EnthalpyTable const& table, HeatGrid const& grid, Co
           std::vector<float>(n, 0),
           std::vector<float>(n, 0),
           std::vector<char>(n, 0),
-          0};
+          0,
+          {}};
 }
 
-namespace {
-
-/// One row: Theta and peak; returns the row's largest enthalpy.
-double look_up(EnthalpyTable const& table, Row const& row, double const* __restrict h, double* __restrict theta,
-               float* __restrict peak) {
+double record_peak(HeatSystem& system, Row const& row) {
+  double const* const h = system.enthalpy.data();
+  float* __restrict const peak = system.peak.data();
   double largest = 0;
-#pragma omp simd reduction(max : largest)
+#pragma omp simd reduction(max : largest) if (row.end - row.begin > 8)
   for (std::int64_t c = row.begin; c < row.end; ++c) {
-    theta[c] = table.conductivity_integral(h[c]);
     float const now = static_cast<float>(h[c]);
     peak[c] = now > peak[c] ? now : peak[c];
     largest = h[c] > largest ? h[c] : largest;
@@ -39,12 +37,47 @@ double look_up(EnthalpyTable const& table, Row const& row, double const* __restr
   return largest;
 }
 
-/// Cells of a row with liquid in it: their time above the liquidus, and who has just melted.
 void record_liquid(HeatSystem& system, Row const& row, double dt, std::vector<std::int64_t>& newly_melted) {
+  double const* const h = system.enthalpy.data();
+  float* __restrict const time = system.time_above_liquidus.data();
+  char const* const melted = system.melted.data();
+  double const liquidus = system.table.liquidus();
+  auto const step = static_cast<float>(dt);
+  int any_new = 0;
+#pragma omp simd reduction(| : any_new)
   for (std::int64_t c = row.begin; c < row.end; ++c) {
-    if (system.enthalpy[c] < system.table.liquidus()) continue;
-    system.time_above_liquidus[c] += static_cast<float>(dt);
-    if (!system.melted[c]) newly_melted.push_back(c);
+    bool const liquid = h[c] >= liquidus;
+    time[c] += liquid ? step : 0;
+    any_new |= liquid && !melted[c];
+  }
+  if (!any_new) return;
+  for (std::int64_t c = row.begin; c < row.end; ++c) {
+    if (h[c] >= liquidus && !melted[c]) newly_melted.push_back(c);
+  }
+}
+
+std::vector<std::int64_t> neighbours_that_melted(HeatSystem const& system) {
+  std::vector<std::int64_t> cells;
+  std::ranges::copy_if(system.conduction.neighbours, std::back_inserter(cells), [&](std::int64_t c) {
+    return system.enthalpy[c] >= system.table.liquidus() && !system.melted[c];
+  });
+  return cells;
+}
+
+void join_melted(HeatSystem& system, std::vector<std::int64_t> const& cells) {
+  for (std::int64_t const c : cells) {
+    system.melted[c] = 1;
+    system.conduction.melt(c);
+  }
+}
+
+namespace {
+
+void look_up_integral(HeatSystem& system) {
+  for (Row const& row : system.conduction.rows_with_neighbours) {
+    for (std::int64_t c = row.begin; c < row.end; ++c) {
+      system.integral[c] = system.table.conductivity_integral(system.enthalpy[c]);
+    }
   }
 }
 
@@ -52,45 +85,31 @@ void record_liquid(HeatSystem& system, Row const& row, double dt, std::vector<st
 
 void finish_step(HeatSystem& system, double dt) {
   system.grid.exchange(system.enthalpy);
-  std::vector<std::int64_t> newly_melted;
-  for (Row const& row : system.conduction.rows_with_neighbours) {
-    double const largest =
-        look_up(system.table, row, system.enthalpy.data(), system.integral.data(), system.peak.data());
-    if (largest >= system.table.liquidus()) record_liquid(system, row, dt, newly_melted);
+  look_up_integral(system);
+  std::vector<std::int64_t> newly_melted = neighbours_that_melted(system);
+  for (Row const& row : system.conduction.rows) {
+    if (record_peak(system, row) >= system.table.liquidus()) record_liquid(system, row, dt, newly_melted);
   }
-  for (std::int64_t c : newly_melted) {
-    system.melted[c] = 1;
-    system.conduction.melt(c);
-  }
-}
-
-void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt) {
-  Conduction const& conduction = system.conduction;
-  double const far = conduction_balance(conduction, system.table, system.enthalpy, system.integral, system.balance);
-  for (CellPower const& heated : source) system.balance[heated.cell] += heated.watts / conduction.cell;
-  system.heat_to_far_field += dt * far;
-  double* const h = system.enthalpy.data();
-  double const* const balance = system.balance.data();
-  double const* const per_capacity = conduction.per_capacity.data();
-  for (Row const& row : conduction.rows) {
-#pragma omp simd
-    for (std::int64_t c = row.begin; c < row.end; ++c) h[c] += dt * per_capacity[c] * balance[c];
-  }
-  drain(system.sink, system.table, dt, system.enthalpy);
-  finish_step(system, dt);
+  join_melted(system, newly_melted);
 }
 
 double stored_heat(HeatSystem const& system) {
+  Conduction const& conduction = system.conduction;
   CompensatedSum heat;
-  for (Row const& row : system.conduction.rows) {
+  for (Row const& row : conduction.rows) {
+    double in_row = 0;
+#pragma omp simd reduction(+ : in_row)
     for (std::int64_t c = row.begin; c < row.end; ++c) {
-      if (system.conduction.fill[c] > 0) heat.add(system.enthalpy[c] * system.metal_volume(c));
+      in_row +=
+          conduction.per_capacity[c] > 0 ? system.enthalpy[c] * (conduction.cell / conduction.per_capacity[c]) : 0;
     }
+    heat.add(in_row);
   }
   return heat.value();
 }
 
 double largest_imbalance(HeatSystem& system) {
+  look_up_integral(system);
   conduction_balance(system.conduction, system.table, system.enthalpy, system.integral, system.balance);
   double largest = 0;
   for (Row const& row : system.conduction.rows) {
@@ -101,13 +120,16 @@ double largest_imbalance(HeatSystem& system) {
 
 double hottest(HeatSystem const& system) {
   double largest = 0;
+  int any_nan = 0;
   for (Row const& row : system.conduction.rows) {
+#pragma omp simd reduction(max : largest) reduction(| : any_nan)
     for (std::int64_t c = row.begin; c < row.end; ++c) {
-      if (std::isnan(system.enthalpy[c])) return std::numeric_limits<double>::quiet_NaN();
-      largest = std::max(largest, system.enthalpy[c]);
+      double const h = system.enthalpy[c];
+      any_nan |= h != h;
+      largest = h > largest ? h : largest;
     }
   }
-  return largest;
+  return any_nan ? std::numeric_limits<double>::quiet_NaN() : largest;
 }
 
 }  // namespace layerloop::thermal

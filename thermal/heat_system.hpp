@@ -15,6 +15,13 @@ struct CellPower {
   double watts;
 };
 
+/// What an explicit step keeps from one call to the next, so that it need not allocate.
+struct StepScratch {
+  std::vector<double> contact_flow;                       ///< as conduction.contacts [W/m]
+  std::vector<double> far_flow;                           ///< as conduction.far [W/m]
+  std::vector<std::array<std::vector<double>, 4>> theta;  ///< of each thread: four planes of cells [W/m]
+};
+
 /// Everything that one rank steps through time. Shapes of the fields: grid.box().size(), x fastest.
 struct HeatSystem {
   EnthalpyTable const& table;
@@ -23,23 +30,37 @@ struct HeatSystem {
   SurfaceSink sink;
 
   std::vector<double> enthalpy;            ///< per volume of metal, zero at ambient [J/m^3]
-  std::vector<double> integral;            ///< Theta(enthalpy) [W/m]
+  std::vector<double> integral;            ///< Theta(enthalpy) at the last `finish_step` [W/m]
   std::vector<double> balance;             ///< scratch [W/m]
   std::vector<float> peak;                 ///< largest enthalpy since the last reset [J/m^3]
   std::vector<float> time_above_liquidus;  ///< [s]
   std::vector<char> melted;                ///< 1: has been at the liquidus
   double heat_to_far_field = 0;            ///< [J] so far, this rank
+  StepScratch scratch;
 
   double metal_volume(std::int64_t cell) const { return conduction.cell / conduction.per_capacity[cell]; }
 };
 
 HeatSystem make_heat_system(EnthalpyTable const& table, HeatGrid const& grid, Conduction conduction, SurfaceSink sink);
 
-/// After a step: fetches the neighbours' layer, looks Theta up, keeps peaks and times, joins what has melted.
+/// Row: keeps peaks; returns the row's largest enthalpy [J/m^3].
+double record_peak(HeatSystem& system, Row const& row);
+
+/// Cells of a row with liquid in it: their time above the liquidus; appends those that have just melted.
+void record_liquid(HeatSystem& system, Row const& row, double dt, std::vector<std::int64_t>& newly_melted);
+
+/// Cells of the neighbours' layer that have melted since this was last asked.
+std::vector<std::int64_t> neighbours_that_melted(HeatSystem const& system);
+
+/// Joins cells that have just melted with what they touch.
+void join_melted(HeatSystem& system, std::vector<std::int64_t> const& cells);
+
+/// After an implicit step: fetches the neighbours' layer, looks Theta up, keeps peaks and times, joins what has melted.
 /// \note Collective
 void finish_step(HeatSystem& system, double dt);
 
-/// One forward Euler step: conduction and source, then the sinks. \pre dt <= stable_step \note Collective
+/// One forward Euler step: conduction and source, then the sinks; then fetches the neighbours' layer and joins what has
+/// melted. The same bits for any number of ranks and threads. \pre dt <= stable_step \note Collective
 void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt);
 
 /// Heat above ambient in this rank's cells [J].

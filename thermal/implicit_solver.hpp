@@ -4,6 +4,7 @@
 
 #include "thermal/heat_system.hpp"
 
+struct _p_Vec;
 struct _p_SNES;
 struct _p_Mat;
 

@@ -49,21 +49,18 @@ void book(OpenCell& open, SurfaceSink::Flux const& flux, double energy) {
 
 }  // namespace
 
-void drain(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double> enthalpy) {
-  for (OpenCell& open : sink.cells) {
-    double& h = enthalpy[static_cast<std::size_t>(open.cell)];
-    auto flux = sink.flux(table, h);
-    if (flux.total() == 0) continue;
-    double const before = h, rate = dt * open.area / open.metal_volume;
-    double const stiffness = rate * flux.slope * table.temperature_slope(h);
-    if (std::abs(stiffness) < not_stiff) {
-      h -= rate * flux.total() / (1 + stiffness);
-    } else {
-      h = drained(sink, table, rate, before);
-      flux = sink.flux(table, h);
-    }
-    book(open, flux, (before - h) * open.metal_volume);
+void drain(SurfaceSink const& sink, OpenCell& open, EnthalpyTable const& table, double dt, double& h) {
+  auto flux = sink.flux(table, h);
+  if (flux.total() == 0) return;
+  double const before = h, rate = dt * open.area / open.metal_volume;
+  double const stiffness = rate * flux.slope * table.temperature_slope(h);
+  if (std::abs(stiffness) < not_stiff) {
+    h -= rate * flux.total() / (1 + stiffness);
+  } else {
+    h = drained(sink, table, rate, before);
+    flux = sink.flux(table, h);
   }
+  book(open, flux, (before - h) * open.metal_volume);
 }
 
 void book(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double const> enthalpy) {

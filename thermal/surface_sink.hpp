@@ -32,10 +32,10 @@ struct SurfaceSink {
   Flux flux(EnthalpyTable const& table, double h) const;
 };
 
-/// Backward Euler of the sinks alone: solves h + dt area q(T(h)) / volume = h* in every open cell and books what left.
+/// Backward Euler of the sinks alone: solves h + dt area q(T(h)) / volume = h* in one open cell and books what left.
 /// q rises with h, so the root is bracketed; Newton's method, bisection where it would leave the bracket. Never
 /// overshoots.
-void drain(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double> enthalpy);
+void drain(SurfaceSink const& sink, OpenCell& open, EnthalpyTable const& table, double dt, double& enthalpy);
 
 /// Books what the fluxes at `enthalpy` take in dt (the implicit solver has them in its residual).
 void book(SurfaceSink& sink, EnthalpyTable const& table, double dt, std::span<double const> enthalpy);

@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "plate.hpp"
+#include "thermal/heat_bench.hpp"
+#include "thermal/heat_system.hpp"
+
+namespace layerloop::thermal {
+namespace {
+
+/// A plate with grains that starts hot in the middle, and power on part of it.
+struct HotPlate {
+  HeatCells cells = make_heat_cells(plate_with_grains({20, 14, 12}, 6), SideY::periodic);
+  EnthalpyTable table{built_in_materials().at("IN718"), 298, 4500};
+  HeatGrid grid{cells.grid, true, Communicator()};
+  HeatSystem system =
+      make_heat_system(table, grid, make_conduction(cells, grid.box(), {40e-6, 40e-6}, 25, 0.3), SurfaceSink{});
+  std::vector<CellPower> source;
+  double step = 0;
+
+  HotPlate() {
+    for (std::int64_t c = cells.grid.size() - 1; c >= 0; --c) {
+      if (cells.fill[static_cast<std::size_t>(c)] == 0) continue;
+      auto const at = cells.grid.coordinates(c);
+      std::int64_t const own = grid.box().own(at);
+      double const r2 = std::pow(at[0] - 9.3, 2) + std::pow(at[1] - 6.1, 2) + std::pow(at[2] - 6.0, 2);
+      system.enthalpy[static_cast<std::size_t>(own)] = 1.4 * table.liquidus() * std::exp(-r2 / 30);
+      if (r2 < 9) source.push_back({own, 0.01 / (1 + r2)});
+    }
+    finish_step(system, 0);
+    step = 0.9 * stable_step(system.conduction, table);
+  }
+};
+
+/// The same step from its parts, one sweep each: every face with its share, every cell with its capacity.
+void step_by_parts(HeatSystem& system, std::vector<CellPower> const& source, double dt) {
+  double const far =
+      conduction_balance(system.conduction, system.table, system.enthalpy, system.integral, system.balance);
+  for (CellPower const& heated : source)
+    system.balance[static_cast<std::size_t>(heated.cell)] += heated.watts / system.conduction.cell;
+  system.heat_to_far_field += dt * far;
+  for (Row const& row : system.conduction.rows) {
+    for (auto c = static_cast<std::size_t>(row.begin); c < static_cast<std::size_t>(row.end); ++c)
+      system.enthalpy[c] += dt * system.conduction.per_capacity[c] * system.balance[c];
+  }
+  finish_step(system, dt);
+}
+
+TEST(ExplicitStep, OnePassHasTheBitsOfItsParts) {
+  HotPlate fused, parts;
+  std::int64_t uniform = 0;
+  for (Row const& row : fused.system.conduction.uniform) uniform += row.end - row.begin;
+  EXPECT_GT(uniform, 500);  // both kinds of cells are in it
+  EXPECT_LT(uniform, fused.cells.unknowns - 500);
+  EXPECT_FALSE(fused.system.conduction.contacts.empty());
+  auto const melted_before = std::ranges::count(fused.system.melted, 1);
+  for (int i = 0; i < 100; ++i) {
+    explicit_step(fused.system, fused.source, fused.step);
+    step_by_parts(parts.system, parts.source, parts.step);
+  }
+  EXPECT_GT(std::ranges::count(fused.system.melted, 1), melted_before);
+  EXPECT_NEAR(fused.system.heat_to_far_field, parts.system.heat_to_far_field, 1e-13 * parts.system.heat_to_far_field);
+  for (Row const& row : fused.system.conduction.rows) {
+    for (auto c = static_cast<std::size_t>(row.begin); c < static_cast<std::size_t>(row.end); ++c) {
+      ASSERT_EQ(fused.system.enthalpy[c], parts.system.enthalpy[c]);
+      ASSERT_EQ(fused.system.peak[c], parts.system.peak[c]);
+      ASSERT_EQ(fused.system.time_above_liquidus[c], parts.system.time_above_liquidus[c]);
+      ASSERT_EQ(fused.system.melted[c], parts.system.melted[c]);
+    }
+  }
+}
+
+TEST(ExplicitStep, ThreadsLeaveTheSameBits) {
+  CellContent const content = plate_with_grains({20, 14, 12}, 6);
+  HeatSettings settings = closed_settings(5e-6);
+  settings.margin = settings.substrate_depth = 40e-6;
+  auto const run = [&](int threads) {
+    omp_set_num_threads(threads);
+    HeatOutcome const outcome =
+        expose(content, beam_from_above(content, 20, 30e-6, 1.0, 30e-6, 70e-6), built_in_materials().at("IN718"),
+               settings, effects_on({"latent_heat", "variable_conductivity", "evaporation", "surface_losses"}),
+               SideY::periodic, Communicator(), Report::silent);
+    omp_set_num_threads(1);
+    return outcome;
+  };
+  HeatOutcome const alone = run(1);
+  EXPECT_GT(alone.heat_evaporated, 0);
+  for (int const threads : {2, 5}) {
+    HeatOutcome const shared = run(threads);
+    EXPECT_EQ(shared.melt.peak_temperature, alone.melt.peak_temperature);
+    EXPECT_EQ(shared.melt.time_above_liquidus, alone.melt.time_above_liquidus);
+    EXPECT_EQ(shared.heat_stored, alone.heat_stored);
+    EXPECT_EQ(shared.heat_out, alone.heat_out);
+  }
+}
+
+TEST(HeatBench, CountsWhatItDoes) {
+  HeatBench const bench = bench_heat(40 * 40 * 40, 2, 1);
+  EXPECT_EQ(bench.cells, 64000);
+  EXPECT_GT(bench.liquid_share, 0.005);
+  double const uniform = std::pow(38.0 / 40, 3);  // all but one layer of cells
+  EXPECT_GE(bench.bytes_per_update, 24 + (1 - uniform) * 20);
+  EXPECT_LE(bench.bytes_per_update, 24 + (1 - uniform) * 20 + 9);
+  EXPECT_NEAR(bench.share_of_triad, 24 * bench.cell_updates_per_second / bench.triad_bytes_per_second,
+              0.5 * bench.share_of_triad);  // medians of both, and of their ratio
+}
+
+}  // namespace
+}  // namespace layerloop::thermal

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+
+namespace layerloop::thermal {
+
+/// How fast explicit steps are, beside a triad a = b + s c over arrays of one double a cell, in turn with them.
+struct HeatBench {
+  std::int64_t cells = 0;  ///< all with an unknown
+  std::int64_t steps = 0;  ///< of each round
+  int threads = 1;
+  double cell_updates_per_second = 0;  ///< median of the rounds [1/s]
+  double triad_bytes_per_second = 0;   ///< median, counting 24 bytes an element [B/s]
+  double share_of_triad = 0;    ///< median over the rounds of updates / triad elements, a round being close in time
+  double bytes_per_update = 0;  ///< that a step has to read and write, each array once [B]
+  double liquid_share = 0;      ///< of the cells at the end
+};
+
+/// A full block of 316L, near a cube in cells of 5 um, far field on its sides and bottom, a molten spot in the middle
+/// of its top and no cell at ambient. Latent heat and variable conductivity are on; nothing heats it, nothing drains
+/// it. Calls `explicit_step`, which is what an exposure calls. \pre one process, PETSc runs
+HeatBench bench_heat(std::int64_t cells, std::int64_t steps, int threads);
+
+}  // namespace layerloop::thermal
