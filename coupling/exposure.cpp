@@ -92,12 +92,11 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
   return exposure;
 }
 
-AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene,
-                                    CellContent const& cells, Case const& checked, std::int32_t layer,
-                                    Communicator const& comm) {
+void expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene, CellContent const& cells,
+                    Case const& checked, std::int32_t layer, Communicator const& comm) {
   AbsorbedPower& power = exposure.source.power[stretch];
   std::int64_t const s = exposure.stop_of_stretch[stretch];
-  if (s < 0) return power;
+  if (s < 0) return;
   BeamStop const& stop = exposure.stops[static_cast<std::size_t>(s)];
   if (checked.laser.absorptivity) {
     power = prescribed_absorption(stop, *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
@@ -118,7 +117,6 @@ AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, ray
   for (BeamStop const& other : exposure.stops) on_time += other.end_time - other.begin_time;
   accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / on_time);
   exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(power));
-  return power;
 }
 
 AreaMap absorbed_energy(HeatSource const& source, VoxelGrid const& grid) {

@@ -37,11 +37,9 @@ struct Exposure {
 Exposure plan_exposure(Case const& checked, std::int32_t layer);
 
 /// Traces the beam at the position of a stretch and books it. With laser.absorptivity given, that share of the beam is
-/// put on the topmost metal of each column instead. Ranks share the rays. \return what is absorbed; no cells with the
-/// beam off \note Collective
-AbsorbedPower const& expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene,
-                                    CellContent const& cells, Case const& checked, std::int32_t layer,
-                                    Communicator const& comm);
+/// put on the topmost metal of each column instead. Ranks share the rays. \note Collective
+void expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene, CellContent const& cells,
+                    Case const& checked, std::int32_t layer, Communicator const& comm);
 
 /// Energy absorbed per area, seen from above [J/m^2].
 AreaMap absorbed_energy(HeatSource const& source, VoxelGrid const& grid);

@@ -136,10 +136,10 @@ MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellCon
   MeltSurface surface(build.solid, build.bed, build.substrate, cells, checked);
   picture(run, build, surface.scene(), {View::whole_machine, View::oblique, View::from_above}, layer);
   double tracing = 0;
-  auto const absorbed_now = [&](std::size_t stretch, std::vector<char> const& melted) {
+  auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
     Stopwatch const timed(tracing);
-    if (checked.optics.retrace && !checked.laser.absorptivity) surface.update(melted);
-    return expose_stretch(exposure, stretch, surface.scene(), cells, checked, layer.layer, run.comm);
+    if (checked.optics.retrace && !checked.laser.absorptivity) surface.update(now.melted());
+    expose_stretch(exposure, stretch, surface.scene(), cells, checked, layer.layer, run.comm);
   };
   auto const reported = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
   thermal::HeatOutcome heat;

@@ -104,16 +104,21 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
                        make_sink(cells, grid, table, metal, settings.ambient_temperature, effects));
   Exposure exposure(system, cells, pools, settings.solver, hottest, comm);
   Progress progress("heat", source.time.back() - source.time.front(), report == Report::progress && comm.is_root());
+  MeltState state{.melted = [&] { return melted_cells(system, cells, comm); }, .depression = {}};
   for (std::size_t i = 0; i < source.power.size(); ++i) {
     double const begin = source.time[i], duration = source.time[i + 1] - begin;
     if (duration == 0) continue;
-    AbsorbedPower const now = absorbed_now ? absorbed_now(i, melted_cells(system, cells, comm)) : source.power[i];
-    check(now, content.grid);
-    if (now.cell.empty()) {
+    if (absorbed_now) {
+      absorbed_now(i, state);
+      check(source.power[i], content.grid);
+    }
+    double const evaporated = exposure.mass_evaporated();
+    if (source.power[i].cell.empty()) {
       exposure.rest(duration, begin);
     } else {
-      exposure.heat(now, duration, begin);
+      exposure.heat(source.power[i], duration, begin);
     }
+    state.vapour_rate = (exposure.mass_evaporated() - evaporated) / duration;
     progress.update(source.time[i + 1] - source.time.front());
   }
   HeatOutcome outcome;

@@ -8,6 +8,7 @@
 #include "core/communicator.hpp"
 #include "core/heat_source.hpp"
 #include "core/melt_record.hpp"
+#include "core/melt_state.hpp"
 #include "thermal/effects/effect_strength.hpp"
 #include "thermal/heat_cells.hpp"
 
@@ -31,9 +32,9 @@ struct HeatOutcome {
 
 enum class Report { progress, silent };
 
-/// What the cells absorb in a stretch of the source, asked for when it begins. `melted`: 1 for cells that have been
-/// above the liquidus so far, shape grid.size(). \note Collective
-using AbsorbedNow = std::function<AbsorbedPower(std::size_t stretch, std::vector<char> const& melted)>;
+/// Called when a stretch of the source begins: sets what the cells absorb in it, power[stretch] of the source, from
+/// what has become of the metal by then. \note Collective
+using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now)>;
 
 /// Heats the cells with the source, starting from ambient, until the source has ended and nothing is above the solidus.
 ///
@@ -52,7 +53,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
                    Report report, AbsorbedNow const& absorbed_now = {});
 
 /// The same from a case: y periodic when the grid spans the machine's width, far field otherwise. \param absorbed_now
-/// where given, replaces the powers of the source, of which then only times and tracks count
+/// where given, sets the powers of the source one by one while it is heated
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
                    Report report, AbsorbedNow const& absorbed_now = {});
 

@@ -139,6 +139,10 @@ double Exposure::check() {
   return hottest;
 }
 
+double Exposure::mass_evaporated() const {
+  return system_.sink.evaporation ? evaporated_ / system_.sink.evaporation->heat_of_vaporisation() : 0;
+}
+
 void Exposure::write(HeatOutcome& outcome) const {
   outcome.heat_in = heat_in_;
   outcome.heat_stored = stored_;
@@ -146,8 +150,7 @@ void Exposure::write(HeatOutcome& outcome) const {
   outcome.heat_evaporated = evaporated_;
   outcome.heat_energy_relative_error = error_;
   outcome.moved_power_share = heat_in_ > 0 ? moved_ / heat_in_ : 0;
-  if (system_.sink.evaporation)
-    outcome.mass_evaporated = evaporated_ / system_.sink.evaporation->heat_of_vaporisation();
+  outcome.mass_evaporated = mass_evaporated();
   outcome.explicit_steps = explicit_count_;
   outcome.implicit_steps = implicit_count_;
 }

@@ -22,6 +22,7 @@ class Exposure {
   /// Beam off until nothing is above the solidus, or nothing gets colder any more. Returns the time that took [s].
   double freeze(double begin);
 
+  double mass_evaporated() const;  ///< so far, over all ranks [kg]
   void write(HeatOutcome& outcome) const;
 
  private:

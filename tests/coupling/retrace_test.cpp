@@ -66,12 +66,13 @@ struct TrackOnPowder {
     Exposure exposure = plan_exposure(checked, 1);
     MeltSurface surface(solid, bed, substrate, cells, checked);
     double molten = 0;
-    auto const now = [&](std::size_t stretch, std::vector<char> const& melted) {
+    auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
+      std::vector<char> const melted = now.melted();
       if (retrace) surface.update(melted);
       molten = static_cast<double>(std::ranges::count(melted, 1));
-      return expose_stretch(exposure, stretch, surface.scene(), cells, checked, 1, comm);
+      expose_stretch(exposure, stretch, surface.scene(), cells, checked, 1, comm);
     };
-    thermal::expose(cells, exposure.source, checked, comm, thermal::Report::silent, now);
+    thermal::expose(cells, exposure.source, checked, comm, thermal::Report::silent, absorbed_now);
     EXPECT_LT(exposure.worst_ray_energy_error, 1e-12);
     return {exposure.mean.absorptivity, molten * cells.grid.cell_volume()};
   }
