@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/case_rows.hpp"
+#include "core/effect_catalogue.hpp"
 
 namespace layerloop {
 namespace {
@@ -300,98 +301,23 @@ std::vector<CaseKey> material_rows() {
 
 // clang-format on
 
-/// The effects that the stages carry. Each gives its largest strength: beyond it the model would lose its meaning.
-struct EffectParameter {
-  std::string name;
-  Dimension dimension;
-  Range range;
-  std::string fallback, sentence;
-};
-
-struct Effect {
-  std::string name, enabled;
-  double largest_strength;
-  std::string sentence;
-  std::vector<EffectParameter> parameters = {};
-};
-
-std::vector<Effect> const& effects() {
-  static std::vector<Effect> const rows = {
-      {"latent_heat", "true", 2, "Latent heat of fusion between solidus and liquidus."},
-      {"variable_conductivity", "true", 1, "Conductivity over temperature; off: its value at the solidus."},
-      {"surface_oxide", "true", 100,
-       "Oxide film of optics.oxide_thickness on all metal, as interfering layers (Born & Wolf 1.6.4); the strength "
-       "scales its thickness."},
-      {"diffuse_scattering", "true", 1,
-       "Share optics.diffuse_share of the reflected light is scattered by Lambert's law; the strength scales it."},
-      {"optical_temperature", "true", 10,
-       "Refractive index at optics.temperature: the damping of the conduction electrons grows with the resistivity, "
-       "that follows from material.conductivity by Wiedemann and Franz; the strength scales the change from 300 K."},
-      {"evaporation", "false", 10, "Heat carried off by metal vapour (Hertz-Knudsen)."},
-      {"surface_losses", "false", 100, "Radiation and convection from metal that faces gas."},
-      {"cohesion", "true", 10, "Cohesion of [contact]; the strength scales its energy (thesis eq. 6, JKR, DMT)."},
-      {"rolling_resistance", "true", 10,
-       "Rolling friction of [contact]; the strength scales it (Ai et al., Powder Technol. 206 (2011) 269)."},
-      {"wall_friction", "true", 10,
-       "Friction at walls of its own, contact.wall_friction; strength 0: walls rub as grains do."},
-      {"wall_cohesion", "true", 10, "Cohesion between grains and walls; the strength scales its energy."},
-      {"capillary_bridge",
-       "false",
-       10,
-       "Liquid bridges between grains that have touched (Willett et al., Langmuir 16 (2000) 9396); the strength scales "
-       "their volume.",
-       {{"liquid_volume",
-         D::none,
-         {1e-9, 0.05},
-         "1e-5",
-         "Volume of a bridge over the cube of twice the reduced radius."},
-        {"surface_tension", D::surface_energy, {0.01, 2}, "\"0.072 N/m\"", "Surface tension of the liquid."},
-        {"contact_angle", D::angle, {0, 1.5}, "\"0 deg\"", "Contact angle of the liquid on the metal."}}},
-      {"electrostatic_charge",
-       "false",
-       10,
-       "Like charge on all grains: they repel one another and are held by their images in walls (method of images; the "
-       "air breaks down at 2.65e-5 C/m2).",
-       {{"charge_density", D::charge_density, {0, 2.65e-5}, "\"2.65e-6 C/m2\"", "Charge on the surface of a grain."}}},
-      {"gas_drag",
-       "false",
-       10,
-       "Stokes drag of gas at rest on every grain; felt by grains below about 8 um.",
-       {{"viscosity",
-         D::viscosity,
-         {1e-6, 1e-3},
-         "\"2.2e-5 Pa s\"",
-         "Viscosity of the gas (argon at 300 K: 2.2e-5 Pa s)."}}},
-      {"blade_vibration",
-       "false",
-       10,
-       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g (Nasato et al., Addit. "
-       "Manuf. 2021, 102248).",
-       {{"amplitude", D::length, {0, 1e-4}, "\"2 um\"", "Amplitude of the recoater's vibration."},
-        {"frequency", D::frequency, {1, 1e5}, "\"500 Hz\"", "Frequency of the recoater's vibration."}}},
-      {"blade_compliance", "false", 100,
-       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides "
-       "the stiffness (Penny et al., arXiv 2209.04320)."},
-      {"fines",
-       "false",
-       10,
-       "Grains finer than the size distribution, mixed in by mass (sieving and laser sizing cut them off).",
-       {{"mass_fraction", D::none, {0, 0.5}, "0.02", "Share of the powder's mass that is fines."},
-        {"diameter", D::length, {1e-6, 5e-5}, "\"8 um\"", "Diameter of the fines."}}},
-  };
-  return rows;
-}
-
 std::vector<CaseKey> effect_rows() {
   std::vector<CaseKey> rows;
-  for (Effect const& effect : effects()) {
+  for (Effect const& effect : effect_catalogue()) {
     auto const enabled = [name = effect.name](Case& into) -> bool& { return into.effects[name].enabled; };
     auto const strength = [name = effect.name](Case& into) -> double& { return into.effects[name].strength; };
     std::string const table = "effects." + effect.name;
-    rows.push_back({table, "enabled", enabled, D::none, {}, Need::never, effect.enabled, effect.sentence});
-    Range const range{0, effect.largest_strength};
+    rows.push_back({table,
+                    "enabled",
+                    enabled,
+                    D::none,
+                    {},
+                    Need::never,
+                    effect.enabled,
+                    fmt::format("{} Source: {}.", effect.sentence, effect.source)});
+    EffectParameter const factor = effect.strength();
     rows.push_back(
-        {table, "strength", strength, D::none, range, Need::never, "1", "Factor on the effect; 0: as if off."});
+        {table, factor.name, strength, factor.dimension, factor.range, Need::never, factor.fallback, factor.sentence});
     for (EffectParameter const& p : effect.parameters) {
       auto const value = [name = effect.name, key = p.name](Case& into) -> double& {
         return into.effects[name].parameters[key];

@@ -95,6 +95,12 @@ constexpr auto units = std::to_array<Unit>({
     {"N/(m K)", D::surface_tension_slope, 1},
     {"N/(mK)", D::surface_tension_slope, 1},
     {"mN/(mK)", D::surface_tension_slope, 1e-3L},
+    {"W/(m2 K)", D::heat_transfer, 1},
+    {"W/(m2K)", D::heat_transfer, 1},
+    {"W/m2K", D::heat_transfer, 1},
+    {"kg/s", D::mass_rate, 1},
+    {"mg/s", D::mass_rate, 1e-6L},
+    {"ug/s", D::mass_rate, 1e-9L},
     {"C/m2", D::charge_density, 1},
     {"uC/m2", D::charge_density, 1e-6L},
     {"Hz", D::frequency, 1},
@@ -168,6 +174,10 @@ std::string_view name(Dimension dimension) {
       return "a charge per area";
     case D::surface_tension_slope:
       return "a surface tension per temperature";
+    case D::heat_transfer:
+      return "a heat transfer coefficient";
+    case D::mass_rate:
+      return "a mass per time";
     case D::frequency:
       return "a frequency";
     case D::linear_density:

@@ -27,7 +27,9 @@ enum class Dimension {
   linear_density,
   viscosity,
   charge_density,
-  surface_tension_slope
+  surface_tension_slope,
+  heat_transfer,
+  mass_rate
 };
 
 std::string_view si_unit(Dimension dimension);  ///< for example "m/s"; empty for none

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/effect_catalogue.hpp"
 #include "core/error.hpp"
 #include "core/note_once.hpp"
 #include "core/progress.hpp"
@@ -43,7 +44,8 @@ SurfaceSink make_sink(HeatCells const& cells, HeatGrid const& grid, EnthalpyTabl
   double const evaporation = effect_strength(effects, "evaporation"),
                losses = effect_strength(effects, "surface_losses");
   if (evaporation != 0) sink.evaporation.emplace(material, evaporation);
-  if (losses != 0) sink.losses.emplace(material, ambient, losses);
+  if (losses != 0)
+    sink.losses.emplace(material, ambient, effect_parameter(effects, "surface_losses", "convection"), losses);
   if (!sink.evaporation && !sink.losses) return sink;
   sink.evaporation_onset = table.solidus();
   VoxelGrid const& voxels = cells.grid;

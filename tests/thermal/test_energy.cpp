@@ -82,7 +82,7 @@ double heat_kept(std::int32_t n) {
   double const depth = 1e-3, cell = depth / n;
   Material const metal = constant_metal(25, 7500, 700);
   Effects effects = effects_on({"surface_losses"});
-  effects["surface_losses"].strength = 25 / depth / 20;  // the effect's coefficient is 20 W/(m2 K)
+  effects["surface_losses"].parameters["convection"] = 25 / depth;
   CellContent const slab = solid_block(cell, {1, 1, n});
   double const diffusivity = 25.0 / (7500.0 * 700), rest = 0.5 * depth * depth / diffusivity;
   double const pulse = 1e-7 * rest;  // heats the slab evenly

@@ -5,7 +5,7 @@ namespace {
 constexpr double stefan_boltzmann = 5.670374419e-8;  // [W/(m^2 K^4)]
 }
 
-SurfaceLosses::SurfaceLosses(Material const& material, double ambient, double strength)
+SurfaceLosses::SurfaceLosses(Material const& material, double ambient, double convection, double strength)
     : ambient_(ambient),
       radiation_(strength * material.emissivity * stefan_boltzmann),
       convection_(strength * convection) {}

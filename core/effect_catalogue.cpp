@@ -1,0 +1,140 @@
+#include "core/effect_catalogue.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/case_rows.hpp"
+
+namespace layerloop {
+
+EffectParameter Effect::strength() const {
+  return {"strength", D::none, {0, largest_strength}, "1", prior_scale, "Factor on the effect; 0: as if off.", 0.0};
+}
+
+// One entry an effect; sentence, source and file last.
+// clang-format off
+namespace {
+
+using enum EffectStage;
+using enum EffectClass;
+
+std::vector<Effect> grain_effects() {
+  return {
+      {"cohesion", dem, calibration, "true", 10, 0.5,
+       "Cohesion of [contact]; the strength scales its energy.",
+       "thesis eq. 6; Johnson, Kendall & Roberts 1971; Derjaguin, Muller & Toporov 1975", "dem/contact_law.cpp"},
+      {"rolling_resistance", dem, calibration, "true", 10, 0.5,
+       "Rolling friction of [contact]; the strength scales it.",
+       "Ai et al., Powder Technol. 206 (2011) 269", "dem/contact_law.cpp"},
+      {"wall_friction", dem, calibration, "true", 10, 0.5,
+       "Friction at walls of its own, contact.wall_friction; strength 0: walls rub as grains do.",
+       "Coulomb", "dem/wall_contacts.cpp"},
+      {"wall_cohesion", dem, calibration, "true", 10, 0.5,
+       "Cohesion between grains and walls; the strength scales its energy.",
+       "thesis eq. 6", "dem/wall_contacts.cpp"},
+      {"capillary_bridge", dem, physics, "false", 10, 1,
+       "Liquid bridges between grains that have touched; the strength scales their volume.",
+       "Willett et al., Langmuir 16 (2000) 9396", "dem/contact_effects.cpp",
+       {{"liquid_volume", D::none, {1e-9, 0.05}, "1e-5", 1e-5,
+         "Volume of a bridge over the cube of twice the reduced radius."},
+        {"surface_tension", D::surface_energy, {0.01, 2}, "\"0.072 N/m\"", 0.01, "Surface tension of the liquid."},
+        {"contact_angle", D::angle, {0, 1.5}, "\"0 deg\"", 0.5, "Contact angle of the liquid on the metal."}}},
+      {"electrostatic_charge", dem, physics, "false", 10, 1,
+       "Like charge on all grains: they repel one another and are held by their images in walls (the air breaks down at "
+       "2.65e-5 C/m2).",
+       "method of images", "dem/contact_effects.cpp",
+       {{"charge_density", D::charge_density, {0, 2.65e-5}, "\"2.65e-6 C/m2\"", 2.65e-6,
+         "Charge on the surface of a grain.", 0.0}}},
+      {"gas_drag", dem, physics, "false", 10, 1,
+       "Stokes drag of gas at rest on every grain; felt by grains below about 8 um.",
+       "Stokes 1851", "dem/contact_effects.cpp",
+       {{"viscosity", D::viscosity, {1e-6, 1e-3}, "\"2.2e-5 Pa s\"", 2e-6,
+         "Viscosity of the gas (argon at 300 K: 2.2e-5 Pa s)."}}},
+      {"blade_vibration", dem, physics, "false", 10, 1,
+       "The recoater shakes along z; felt once amplitude (2 pi frequency)^2 exceeds about g.",
+       "Nasato et al., Addit. Manuf. 2021, 102248", "dem/machine_rig.cpp",
+       {{"amplitude", D::length, {0, 1e-4}, "\"2 um\"", 2e-6, "Amplitude of the recoater's vibration.", 0.0},
+        {"frequency", D::frequency, {1, 1e5}, "\"500 Hz\"", 300, "Frequency of the recoater's vibration."}}},
+      {"blade_compliance", dem, physics, "false", 100, 1,
+       "The recoater yields along z as machine.blade_stiffness, blade_mass and blade_damping say; the strength divides "
+       "the stiffness.",
+       "Penny et al., arXiv 2209.04320", "dem/machine_rig.cpp"},
+      {"fines", dem, instrument, "false", 10, 1,
+       "Grains finer than the size distribution, mixed in by mass (sieving and laser sizing cut them off).",
+       "mass balance", "core/grain_size.cpp",
+       {{"mass_fraction", D::none, {0, 0.5}, "0.02", 0.02, "Share of the powder's mass that is fines.", 0.0},
+        {"diameter", D::length, {1e-6, 5e-5}, "\"8 um\"", 4e-6, "Diameter of the fines."}}},
+  };
+}
+
+std::vector<Effect> light_effects() {
+  return {
+      {"surface_oxide", laser, physics, "true", 100, 1,
+       "Oxide film of optics.oxide_thickness on all metal, as interfering layers; the strength scales its thickness.",
+       "Born & Wolf, Principles of Optics, 1.6.4", "raytrace/surface.cpp"},
+      {"diffuse_scattering", laser, physics, "true", 1, 0.5,
+       "Share optics.diffuse_share of the reflected light is scattered by Lambert's law; the strength scales it.",
+       "Lambert 1760", "raytrace/ray_loop.cpp"},
+      {"optical_temperature", laser, physics, "true", 10, 0.5,
+       "Refractive index at optics.temperature: the damping of the conduction electrons grows with the resistivity, "
+       "that follows from material.conductivity by Wiedemann and Franz; the strength scales the change from 300 K.",
+       "Drude 1900; Wiedemann & Franz 1853", "core/optical_constants.cpp"},
+  };
+}
+
+std::vector<Effect> heat_effects() {
+  return {
+      {"latent_heat", heat, physics, "true", 2, 0.1,
+       "Latent heat of fusion between solidus and liquidus.",
+       "Voller & Cross, Int. J. Heat Mass Transf. 24 (1981) 545", "thermal/effects/latent_heat.hpp"},
+      {"variable_conductivity", heat, physics, "true", 1, 0.3,
+       "Conductivity over temperature; off: its value at the solidus.",
+       "sources of the material's table", "thermal/effects/variable_conductivity.hpp"},
+      {"evaporation", heat, physics, "false", 10, 0.3,
+       "Heat carried off by metal vapour.",
+       "Hertz-Knudsen; Knight, AIAA J. 17 (1979) 519", "thermal/effects/evaporation.cpp"},
+      {"surface_losses", heat, physics, "false", 100, 1,
+       "Radiation and convection from metal that faces gas.",
+       "Stefan-Boltzmann; Newton", "thermal/effects/surface_losses.cpp",
+       {{"convection", D::heat_transfer, {0, 1e6}, "\"20 W/(m2 K)\"", 30,
+         "Heat transfer coefficient to the gas (published models: 10 to 80 W/(m2 K)); 0: radiation alone.", 0.0}}},
+  };
+}
+
+}  // namespace
+// clang-format on
+
+std::vector<Effect> const& effect_catalogue() {
+  static std::vector<Effect> const effects = [] {
+    std::vector<Effect> all;
+    for (auto const part : {grain_effects, light_effects, heat_effects})
+      for (Effect& effect : part()) all.push_back(std::move(effect));
+    return all;
+  }();
+  return effects;
+}
+
+namespace {
+
+double default_value(EffectParameter const& parameter) {
+  std::string const& text = parameter.fallback;
+  return text.front() == '"' ? parse_quantity(text.substr(1, text.size() - 2), parameter.dimension) : std::stod(text);
+}
+
+}  // namespace
+
+double effect_parameter(std::map<std::string, EffectSettings> const& effects, std::string const& effect,
+                        std::string const& parameter) {
+  if (auto const settings = effects.find(effect); settings != effects.end()) {
+    auto const& given = settings->second.parameters;
+    if (auto const value = given.find(parameter); value != given.end()) return value->second;
+  }
+  for (Effect const& known : effect_catalogue()) {
+    if (known.name != effect) continue;
+    auto const row = std::ranges::find(known.parameters, parameter, &EffectParameter::name);
+    if (row != known.parameters.end()) return default_value(*row);
+  }
+  throw std::out_of_range("no parameter " + effect + "." + parameter);
+}
+
+}  // namespace layerloop
