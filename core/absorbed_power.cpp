@@ -30,6 +30,7 @@ void accumulate(AbsorbedPower& sum, AbsorbedPower const& other, double weight) {
   sum.incident = incident;
   sum.absorbed += weight * other.absorbed;
   sum.escaped += weight * other.escaped;
+  sum.attenuated += weight * other.attenuated;
   sum.residual += weight * other.residual;
   sum.outside_grid += weight * other.outside_grid;
   sum.rays += other.rays;
@@ -39,7 +40,7 @@ void accumulate(AbsorbedPower& sum, AbsorbedPower const& other, double weight) {
 }
 
 double ray_energy_error(AbsorbedPower const& power) {
-  return std::abs(power.incident - power.absorbed - power.escaped - power.residual) / power.incident;
+  return std::abs(power.incident - power.absorbed - power.escaped - power.attenuated - power.residual) / power.incident;
 }
 
 }  // namespace layerloop

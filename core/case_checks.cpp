@@ -399,6 +399,10 @@ class CaseChecks {
     if (known({"laser.focus_offset", "laser.rayleigh_length"}) && laser.focus_offset != 0 && !laser.rayleigh_length)
       report("laser.focus_offset", "= {} (how fast the beam widens is not known) give laser.rayleigh_length",
              length(laser.focus_offset));
+    if (known({"laser.profile"}) && laser.profile == SpotProfile::file && c_.effect_strength("spot_drift") > 0)
+      report("effects.spot_drift.enabled", "= true (the table of laser.profile_file has a fixed size) name a profile");
+    if (c_.effect_strength("plume_attenuation") > 0 && c_.effect_strength("evaporation") == 0)
+      report("effects.plume_attenuation.enabled", "= true (nothing evaporates) enable effects.evaporation as well");
     refractive_index();
     optical_effects();
   }

@@ -1,6 +1,7 @@
 #include "core/effect_catalogue.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/case_rows.hpp"
@@ -79,6 +80,26 @@ std::vector<Effect> light_effects() {
        "Refractive index at optics.temperature: the damping of the conduction electrons grows with the resistivity, "
        "that follows from material.conductivity by Wiedemann and Franz; the strength scales the change from 300 K.",
        "Drude 1900; Wiedemann & Franz 1853", "core/optical_constants.cpp"},
+      {"plume_attenuation", laser, physics, "false", 10, 1,
+       "Share of the beam lost in the vapour above the pool, by Beer-Lambert with what evaporates at the time; does "
+       "nothing without the effect evaporation.",
+       "Shcheglov et al., Laser Phys. Lett. 8 (2011) 475", "coupling/effects/plume_attenuation.cpp",
+       {{"rate_of_unit_depth", D::mass_rate, {1e-9, 1}, "\"36 mg/s\"", 2e-5,
+         "Mass rate of evaporation at which the plume's optical depth is 1."},
+        {"relaxation_time", D::time, {0, 1}, "\"50 us\"", 5e-5,
+         "Time over which the rate of evaporation is averaged: that in which a plume rises out of the beam."},
+        {"flow_direction", D::angle, {-2 * std::numbers::pi, 2 * std::numbers::pi}, "\"0 deg\"", 1,
+         "Direction in which the shielding gas flows over the bed, from x towards y.", {}, EffectSign::either},
+        {"flow_asymmetry", D::none, {-1, 1}, "0", 0.5,
+         "Relative gain of the optical depth when scanning with the gas flow, and its loss against it; negative: the "
+         "other way round.", 0.0, EffectSign::either}}},
+      {"spot_drift", laser, instrument, "false", 10, 1,
+       "Focus that moves up as the optics warm, so that the spot grows over the beam-on time of a build.",
+       "Siegman, Lasers (1986), 17.1", "coupling/effects/spot_drift.cpp",
+       {{"rate", D::speed, {0, 1}, "\"0.2 mm/s\"", 2e-4, "Rise of the focus over the time that the beam is on.", 0.0},
+        {"largest_shift", D::length, {0, 0.1}, "\"1 mm\"", 1e-3, "Rise at which it ends.", 0.0},
+        {"beam_quality", D::none, {1, 50}, "1.1", 0.2,
+         "M2 of the beam, for its Rayleigh length where laser.rayleigh_length is not given."}}},
   };
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
+#include "coupling/effects/spot_drift.hpp"
 #include "coupling/optics_of_case.hpp"
 #include "coupling/scan_path.hpp"
 #include "raytrace/trace.hpp"
@@ -19,7 +21,7 @@ std::vector<BeamStop> beam_stops(std::vector<Track> const& tracks, double spacin
     double const duration = track.end_time - track.begin_time;
     for (std::int64_t s = 0; s < count; ++s) {
       auto const share = [&](double part) { return (static_cast<double>(s) + part) / static_cast<double>(count); };
-      stops.push_back({track.begin + share(0.5) * along, track.begin_time + share(0.0) * duration,
+      stops.push_back({track.begin + share(0.5) * along, along.normalized(), track.begin_time + share(0.0) * duration,
                        track.begin_time + share(1.0) * duration, track.power});
     }
   }
@@ -85,36 +87,69 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
     source.time.push_back(exposure.stops[s].end_time);
   }
   source.power.resize(exposure.stop_of_stretch.size());
+  exposure.plume = Plume(checked);
   if (!checked.laser.absorptivity) {
-    exposure.beam = spot_beam(checked, Vec3::Zero(), checked.laser.power);
+    exposure.beam = spot_beam(checked.laser, Vec3::Zero(), checked.laser.power);
     exposure.optics = optical_set(checked);
   }
   return exposure;
 }
 
-void expose_stretch(Exposure& exposure, std::size_t stretch, raytrace::BedScene const& scene, CellContent const& cells,
-                    Case const& checked, std::int32_t layer, Communicator const& comm) {
-  AbsorbedPower& power = exposure.source.power[stretch];
-  std::int64_t const s = exposure.stop_of_stretch[stretch];
-  if (s < 0) return;
-  BeamStop const& stop = exposure.stops[static_cast<std::size_t>(s)];
-  if (checked.laser.absorptivity) {
-    power = prescribed_absorption(stop, *checked.laser.absorptivity, checked.laser.spot_radius(), cells);
-  } else {
-    raytrace::Beam beam = exposure.beam;
-    beam.centre = stop.centre;
-    beam.power = stop.power;
-    // Every position draws its own rays: the errors of the positions are independent.
-    std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint64_t>(s);
-    raytrace::TraceSettings const settings{.rays = checked.optics.rays,
-                                           .seed = checked.seed,
-                                           .id = id,
-                                           .polarisation = polarisation_of(checked),
-                                           .diffuse_share = diffuse_share(checked)};
-    power = raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings, &comm);
-  }
-  double on_time = 0;
-  for (BeamStop const& other : exposure.stops) on_time += other.end_time - other.begin_time;
+namespace {
+
+double beam_on_time(std::span<BeamStop const> stops) {
+  double time = 0;
+  for (BeamStop const& stop : stops) time += stop.end_time - stop.begin_time;
+  return time;
+}
+
+/// What a stop absorbs of a beam of this power. \param laser  at this time
+AbsorbedPower absorb(Exposure const& exposure, std::size_t s, double beam_power, LaserSettings const& laser,
+                     raytrace::BedScene const& scene, CellContent const& cells, Case const& checked, std::int32_t layer,
+                     Communicator const& comm) {
+  BeamStop stop = exposure.stops[s];
+  stop.power = beam_power;
+  if (checked.laser.absorptivity)
+    return prescribed_absorption(stop, *checked.laser.absorptivity, laser.spot_radius(), cells);
+  raytrace::Beam beam = exposure.beam;
+  if (laser.focus_offset != checked.laser.focus_offset) beam = spot_beam(laser, stop.centre, 0);
+  beam.centre = stop.centre;
+  beam.power = stop.power;
+  // Every position draws its own rays: the errors of the positions are independent.
+  std::uint64_t const id = static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint64_t>(s);
+  raytrace::TraceSettings const settings{.rays = checked.optics.rays,
+                                         .seed = checked.seed,
+                                         .id = id,
+                                         .polarisation = polarisation_of(checked),
+                                         .diffuse_share = diffuse_share(checked)};
+  return raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings, &comm);
+}
+
+/// Books what the plume took from a beam of `power` before the rest was absorbed as `absorbed` says.
+void book_attenuation(AbsorbedPower& absorbed, double power) {
+  double const passed = absorbed.incident / power;
+  absorbed.attenuated = power - absorbed.incident;
+  absorbed.incident = power;
+  absorbed.absorptivity *= passed;
+  absorbed.standard_error *= passed;
+}
+
+}  // namespace
+
+void expose_stretch(Exposure& exposure, std::size_t stretch, MeltState const& now, raytrace::BedScene const& scene,
+                    CellContent const& cells, Case const& checked, std::int32_t layer, Communicator const& comm) {
+  HeatSource& source = exposure.source;
+  if (stretch > 0) exposure.plume.feed(now.vapour_rate, source.time[stretch] - source.time[stretch - 1]);
+  if (exposure.stop_of_stretch[stretch] < 0) return;
+  auto const s = static_cast<std::size_t>(exposure.stop_of_stretch[stretch]);
+  std::span<BeamStop const> const stops = exposure.stops;
+  BeamStop const& stop = stops[s];
+  double const on_time = beam_on_time(stops);
+  LaserSettings const laser = drifted_laser(checked, (layer - 1) * on_time + beam_on_time(stops.first(s)));
+  AbsorbedPower& power = source.power[stretch];
+  power = absorb(exposure, s, stop.power * exposure.plume.transmission(stop.along), laser, scene, cells, checked, layer,
+                 comm);
+  book_attenuation(power, stop.power);
   accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / on_time);
   exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(power));
 }

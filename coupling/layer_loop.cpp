@@ -139,7 +139,7 @@ MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellCon
   auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
     Stopwatch const timed(tracing);
     if (checked.optics.retrace && !checked.laser.absorptivity) surface.update(now.melted());
-    expose_stretch(exposure, stretch, surface.scene(), cells, checked, layer.layer, run.comm);
+    expose_stretch(exposure, stretch, now, surface.scene(), cells, checked, layer.layer, run.comm);
   };
   auto const reported = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
   thermal::HeatOutcome heat;

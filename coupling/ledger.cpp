@@ -26,6 +26,7 @@ void book_light(Ledger& ledger, Exposure const& exposure, std::int32_t layer) {
   mean(ledger.power_incident, exposure.mean.incident);
   mean(ledger.power_absorbed, exposure.mean.absorbed);
   mean(ledger.power_escaped, exposure.mean.escaped);
+  mean(ledger.power_attenuated, exposure.mean.attenuated);
   mean(ledger.power_residual, exposure.mean.residual);
   ledger.ray_energy_relative_error = std::max(ledger.ray_energy_relative_error, exposure.worst_ray_energy_error);
 }

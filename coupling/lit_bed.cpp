@@ -144,7 +144,7 @@ raytrace::Beam beam_over(LitBed const& lit, Case const& checked) {
   double const power = checked.laser.power > 0 ? checked.laser.power : 1;
   Vec3 centre = 0.5 * (lit.lower + lit.upper);
   centre.z() = lit.upper.z();
-  if (!checked.optics.uniform_beam) return spot_beam(checked, centre, power);
+  if (!checked.optics.uniform_beam) return spot_beam(checked.laser, centre, power);
   return even_beam(checked, centre, lit.upper.x() - lit.lower.x(), lit.upper.y() - lit.lower.y(), power);
 }
 

@@ -63,8 +63,7 @@ raytrace::Surface surface_of(Case const& checked, Material const& metal) {
   return surface;
 }
 
-raytrace::Beam directed_beam(Case const& checked, Vec3 const& centre, double power) {
-  LaserSettings const& laser = checked.laser;
+raytrace::Beam directed_beam(LaserSettings const& laser, Vec3 const& centre, double power) {
   raytrace::Beam beam{.centre = centre, .power = power};
   beam.incidence_angle = laser.incidence_angle;
   beam.incidence_azimuth = laser.incidence_azimuth;
@@ -91,10 +90,9 @@ void choose_index(Material& metal, double wavelength) {
 
 }  // namespace
 
-raytrace::Beam spot_beam(Case const& checked, Vec3 const& centre, double power) {
+raytrace::Beam spot_beam(LaserSettings const& laser, Vec3 const& centre, double power) {
   using raytrace::BeamProfile;
-  LaserSettings const& laser = checked.laser;
-  raytrace::Beam beam = directed_beam(checked, centre, power);
+  raytrace::Beam beam = directed_beam(laser, centre, power);
   beam.radius = laser.spot_radius();
   beam.ellipticity = laser.ellipticity;
   if (laser.rayleigh_length)
@@ -110,7 +108,7 @@ raytrace::Beam spot_beam(Case const& checked, Vec3 const& centre, double power) 
 }
 
 raytrace::Beam even_beam(Case const& checked, Vec3 const& centre, double size_x, double size_y, double power) {
-  raytrace::Beam beam = directed_beam(checked, centre, power);
+  raytrace::Beam beam = directed_beam(checked.laser, centre, power);
   beam.profile = raytrace::BeamProfile::uniform;
   beam.size_x = size_x;
   beam.size_y = size_y;

@@ -8,8 +8,8 @@
 
 namespace layerloop::coupling {
 
-/// The case's beam with its axis through `centre`, the level of the layer. \throws InputError, FileError its table
-raytrace::Beam spot_beam(Case const& checked, Vec3 const& centre, double power);
+/// The laser's beam with its axis through `centre`, the level of the layer. \throws InputError, FileError its table
+raytrace::Beam spot_beam(LaserSettings const& laser, Vec3 const& centre, double power);
 
 /// The same light evenly over a level rectangle around `centre`.
 raytrace::Beam even_beam(Case const& checked, Vec3 const& centre, double size_x, double size_y, double power);

@@ -174,6 +174,7 @@ void members(Of<Ledger> auto& ledger, Visit&& visit) {
   visit("power_incident", ledger.power_incident);
   visit("power_absorbed", ledger.power_absorbed);
   visit("power_escaped", ledger.power_escaped);
+  visit("power_attenuated", ledger.power_attenuated);
   visit("power_residual", ledger.power_residual);
   visit("ray_energy_relative_error", ledger.ray_energy_relative_error);
   visit("power_rescaling", ledger.power_rescaling);

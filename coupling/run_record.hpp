@@ -19,9 +19,10 @@ struct Ledger {
   double mass_relative_error = 0;
   std::int64_t particles_fed = 0, particles_bed = 0, particles_overflow = 0, particles_melted = 0, particles_lost = 0;
   std::int64_t particles_trapped = 0;  ///< of the melted: stayed whole inside the part
-  double power_incident = 0, power_absorbed = 0, power_escaped = 0, power_residual = 0;  ///< mean over the exposure [W]
-  double ray_energy_relative_error = 0;                                                  ///< worst beam position
-  double power_rescaling = 0;  ///< factor - 1 that was applied to the absorbed power
+  double power_incident = 0, power_absorbed = 0, power_escaped = 0, power_attenuated = 0,
+         power_residual = 0;             ///< mean over the exposure [W]
+  double ray_energy_relative_error = 0;  ///< worst beam position
+  double power_rescaling = 0;            ///< factor - 1 that was applied to the absorbed power
   double heat_in = 0, heat_stored = 0, heat_out = 0, heat_energy_relative_error = 0;  ///< [J]
   double surface_height_correction = 0;  ///< mean change of the surface by levelling and resettling [m]
   // Of the moving grains [J], summed over all layers, with run.energy_ledger; see dem::EnergyLedger.

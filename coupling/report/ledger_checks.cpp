@@ -49,6 +49,7 @@ LedgerTable light_table(Ledger const& l) {
           {{"incident", watts(l.power_incident), true},
            {"absorbed", watts(l.power_absorbed)},
            {"escaped", watts(l.power_escaped)},
+           {"lost in the plume", watts(l.power_attenuated)},
            {"still on rays that were cut off", watts(l.power_residual)},
            {"factor that was then applied to the absorbed power, less 1", significant(l.power_rescaling, 2)}},
           {small_enough("relative error, worst beam position", l.ray_energy_relative_error, ray_limit),

@@ -114,7 +114,7 @@ TEST(LitBed, SpotTakesTheCasesShape) {
   Case const checked = case_with({"optics.uniform_beam=false", "laser.spot_diameter=100 um",
                                   "laser.spot_definition=1/e2", "laser.focus_offset=3 mm", "laser.rayleigh_length=3 mm",
                                   "laser.polarisation=s", "laser.incidence_angle=30 deg"});
-  raytrace::Beam const beam = spot_beam(checked, Vec3(1, 2, 3), 5);
+  raytrace::Beam const beam = spot_beam(checked.laser, Vec3(1, 2, 3), 5);
   EXPECT_NEAR(beam.radius, std::sqrt(2.0) * 50e-6, 1e-18);
   EXPECT_NEAR(1 / beam.front_curvature, 6e-3, 1e-15);
   EXPECT_EQ(beam.polarisation, raytrace::BeamPolarisation::s);
@@ -122,7 +122,7 @@ TEST(LitBed, SpotTakesTheCasesShape) {
   EXPECT_NEAR(beam.incidence_angle, std::acos(std::sqrt(.75)), 1e-15);
   Case const ring = case_with({"optics.uniform_beam=false", "laser.spot_diameter=100 um", "laser.spot_definition=1/e2",
                                "laser.profile=ring", "laser.ring_width=20 um"});
-  EXPECT_TRUE(spot_beam(ring, Vec3::Zero(), 1).table);
+  EXPECT_TRUE(spot_beam(ring.laser, Vec3::Zero(), 1).table);
 }
 
 }  // namespace

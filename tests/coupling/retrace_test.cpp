@@ -70,7 +70,7 @@ struct TrackOnPowder {
       std::vector<char> const melted = now.melted();
       if (retrace) surface.update(melted);
       molten = static_cast<double>(std::ranges::count(melted, 1));
-      expose_stretch(exposure, stretch, surface.scene(), cells, checked, 1, comm);
+      expose_stretch(exposure, stretch, now, surface.scene(), cells, checked, 1, comm);
     };
     thermal::expose(cells, exposure.source, checked, comm, thermal::Report::silent, absorbed_now);
     EXPECT_LT(exposure.worst_ray_energy_error, 1e-12);

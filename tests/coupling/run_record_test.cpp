@@ -81,10 +81,11 @@ TEST(RunRecord, every_member_survives) {
   SampleRun run = sample_run();
   Ledger& l = run.record.ledger;
   double mark = 0.5;
-  for (double* member : {&l.mass_fed, &l.mass_bed, &l.mass_overflow, &l.mass_melted, &l.mass_evaporated, &l.mass_lost,
-                         &l.mass_relative_error, &l.power_incident, &l.power_absorbed, &l.power_escaped,
-                         &l.power_residual, &l.ray_energy_relative_error, &l.power_rescaling, &l.heat_in,
-                         &l.heat_stored, &l.heat_out, &l.heat_energy_relative_error, &l.surface_height_correction})
+  for (double* member :
+       {&l.mass_fed, &l.mass_bed, &l.mass_overflow, &l.mass_melted, &l.mass_evaporated, &l.mass_lost,
+        &l.mass_relative_error, &l.power_incident, &l.power_absorbed, &l.power_escaped, &l.power_attenuated,
+        &l.power_residual, &l.ray_energy_relative_error, &l.power_rescaling, &l.heat_in, &l.heat_stored, &l.heat_out,
+        &l.heat_energy_relative_error, &l.surface_height_correction})
     *member = mark += 1;
   l.particles_trapped = 99;
   run.record.layers[1].pictures = {{"a.png", "caption \"quoted\" ü"}};

@@ -114,7 +114,7 @@ class LayerLoop(unittest.TestCase):
         self.assertGreater(ledger["particles_melted"], 0)
         mass = ledger["mass_bed"] + ledger["mass_overflow"] + ledger["mass_melted"] + ledger["mass_lost"]
         self.assertAlmostEqual(mass / ledger["mass_fed"], 1, delta=1e-13)
-        light = ledger["power_absorbed"] + ledger["power_escaped"] + ledger["power_residual"]
+        light = sum(ledger["power_" + way] for way in ("absorbed", "escaped", "attenuated", "residual"))
         self.assertAlmostEqual(light / ledger["power_incident"], 1, delta=1e-12)
         self.assertLess(ledger["power_residual"] / ledger["power_incident"], 1e-6)
         heat = ledger["heat_stored"] + ledger["heat_out"]
