@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   apps::add_run(program, action);
   apps::add_spread(program, action);
   apps::add_absorb(program, action);
+  apps::add_melt(program, action);
   apps::add_bench(program, action);
   apps::add_check(program, action);
   apps::add_calibrate(program, action);

@@ -31,9 +31,11 @@ enum class LaserPolarisation { unpolarised, s, p, x, y, circular };
 enum class PolarisationModel { averaged, tracked };
 /// Where the bed of the verb `absorb` comes from.
 enum class AbsorbingBed { spread, settled, file };
+/// What the verb `melt` melts; `automatic` is settled when the case is read.
+enum class MeltedBed { automatic, plate, spread, file };
 enum class ScanKind { track, hatch };
 /// What becomes of a spread layer, or that there is none; the verb decides.
-enum class Process { melting, spreading, calibrating, absorbing };
+enum class Process { melting, spreading, calibrating, absorbing, exposing };
 enum class HeatSolver { explicit_steps, implicit_steps, automatic };
 
 struct PowderSettings {
@@ -166,9 +168,10 @@ struct ScanSettings {
 };
 
 struct HeatSettings {
-  double cell_size = 0;
-  double substrate_depth = 0;  ///< of the plate that the grid holds [m]
-  double margin = 0;           ///< of the grid around the scanned patch [m]
+  double cell_size = 0;           ///< [m]; verb melt: 0, chosen by itself
+  std::vector<double> size = {};  ///< verb melt: of the heated plate along x, y, z [m]; empty: chosen
+  double substrate_depth = 0;     ///< of the plate that the grid holds [m]
+  double margin = 0;              ///< of the grid around the scanned patch [m]
   double ambient_temperature = 0;
   HeatSolver solver = HeatSolver::automatic;
   double powder_contact_conductivity = 0;  ///< across faces between different grains [W/(m K)]: gas and point contacts
@@ -217,6 +220,12 @@ struct AbsorbSettings {
   double map_spacing = 0;  ///< pixels of the map of absorbed light [m]
 };
 
+/// The verb melt (coupling/melt_study.hpp).
+struct MeltSettings {
+  MeltedBed bed = MeltedBed::automatic;
+  bool two_grids = false;  ///< also on a coarser grid, for the discretisation error
+};
+
 /// One `[effects.NAME]` table.
 struct EffectSettings {
   bool enabled = false;
@@ -239,6 +248,7 @@ struct Case {
   RunSettings run;
   CalibrateSettings calibrate;
   AbsorbSettings absorb;
+  MeltSettings melt;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
   Material material;                       ///< the powder's, overrides applied; substrate and part are the same metal
   std::vector<Material> admixtures;        ///< the others of powder.mixture
@@ -246,7 +256,9 @@ struct Case {
   std::map<std::string, BodySettings> bodies;                ///< by material; of the walls: "wall"
   std::map<std::array<std::string, 2>, PairSettings> pairs;  ///< by materials, or material and "wall", ascending
 
-  bool has_laser() const { return process == Process::melting && !machine.frozen_zone; }
+  bool has_laser() const {
+    return process == Process::exposing || (process == Process::melting && !machine.frozen_zone);
+  }
   bool has_part() const { return process == Process::melting || machine.frozen_zone; }
   /// By PowderBed::material: 0 is `material`, then the admixtures.
   std::vector<Material> materials() const {
@@ -260,8 +272,12 @@ struct Case {
                                             : admixtures.at(static_cast<std::size_t>(index - 1)).density;
   }
   bool has_machine() const {
-    return process != Process::calibrating && (process != Process::absorbing || absorb.bed == AbsorbingBed::spread);
+    if (process == Process::absorbing) return absorb.bed == AbsorbingBed::spread;
+    if (process == Process::exposing) return melt.bed == MeltedBed::spread;
+    return process != Process::calibrating;
   }
+  /// Of bed and plate along y [m]; 0: they end at open sides.
+  double period_y() const { return has_machine() ? machine.width : 0.0; }
   bool has_light() const { return has_laser() || process == Process::absorbing; }
   bool has_spot() const { return has_laser() || (process == Process::absorbing && !optics.uniform_beam); }
   bool effect_enabled(std::string const& effect) const { return effects.at(effect).enabled; }

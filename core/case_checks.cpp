@@ -39,6 +39,7 @@ class CaseChecks {
     material();
     calibrate();
     if (c_.has_light()) light();
+    if (c_.process == Process::exposing) plate();
     if (!c_.has_machine()) return;
     feed();
     piston();
@@ -314,6 +315,24 @@ class CaseChecks {
     if (scan.kind == ScanKind::hatch && scan.tracks > 1 && scan.hatch_spacing == 0) {
       report("scan.hatch_spacing", "= 0 (must be above 0 with {} tracks)", scan.tracks);
     }
+  }
+
+  /// What the verb melt heats, unless it is the deposition zone of a machine.
+  void plate() const {
+    if (c_.has_machine()) return;
+    scan();
+    optics();
+    if (!known({"laser.spot_diameter", "laser.spot_definition"})) return;
+    double const radius = c_.laser.spot_radius() + c_.laser.ring_half_width();
+    if (known({"heat.cell_size"}) && c_.heat.cell_size > radius)
+      report("heat.cell_size", "= {} (must resolve the beam: at most its 1/e2 radius, {})", length(c_.heat.cell_size),
+             length(radius));
+    if (!known({"heat.size"}) || c_.heat.size.empty()) return;
+    if (c_.heat.size.size() != 3)
+      report("heat.size", "has {} values (three are needed: [x, y, z])", c_.heat.size.size());
+    else if (known({"scan.track_length"}) && c_.scan.track_length + 2 * radius > c_.heat.size[0])
+      report("heat.size", "= [{}, ...] (beam off the plate: track and spot need {} along x) lengthen it",
+             length(c_.heat.size[0]), length(c_.scan.track_length + 2 * radius));
   }
 
   /// The patch is centred on the deposition zone; tracks run along x, y is periodic.

@@ -59,6 +59,8 @@ class CaseReader {
     for (CaseKey const& row : case_schema()) {
       if (row.table != "material" && !is_of_names(row)) fill(row, row.table, case_);
     }
+    if (case_.melt.bed == MeltedBed::automatic)
+      case_.melt.bed = tables_.contains("machine") ? MeltedBed::spread : MeltedBed::plate;
     read_mixture();
     read_materials();
     report_missing();

@@ -1,4 +1,4 @@
-// Rows of the tables of light: [laser], [optics], [scan], [absorb].
+// Rows of the tables of light: [laser], [optics], [scan], [absorb], [melt].
 #include <numbers>
 
 #include "core/case_rows.hpp"
@@ -105,6 +105,17 @@ std::vector<CaseKey> absorb_rows() {
        "Slices of the depth profile, from the top of the bed to its floor."},
       {"absorb", "map_spacing", at<absorb, &A::map_spacing>, D::length, {1e-7, 1e-3}, Need::never, "\"5 um\"",
        "Pixels of the map of absorbed light."},
+  };
+}
+
+std::vector<CaseKey> melt_rows() {
+  using M = MeltSettings;
+  constexpr auto melt = &Case::melt;
+  return {
+      {"melt", "bed", choice<melt, &M::bed>({"automatic", "plate", "spread", "file"}), D::none, {}, Need::never, "\"automatic\"",
+       "What the verb melt melts: a bare plate, a layer that the recoater spreads on it first, or the file of --bed. `automatic`: `spread` where there is a table [machine], else `plate`."},
+      {"melt", "two_grids", at<melt, &M::two_grids>, D::none, {}, Need::never, "false",
+       "Whether the exposure is repeated with cells 1.5 times as large, for the discretisation error of the pool."},
   };
 }
 // clang-format on

@@ -37,8 +37,9 @@ Choice word(std::vector<std::string> const& words) {
           [words](Case& into, std::size_t index) { (into.*....*path) = words.at(index); }};
 }
 
-/// [laser], [optics] and [scan]; [absorb].
+/// [laser], [optics] and [scan]; [absorb]; [melt].
 std::vector<CaseKey> laser_rows();
 std::vector<CaseKey> absorb_rows();
+std::vector<CaseKey> melt_rows();
 
 }  // namespace layerloop

@@ -169,7 +169,9 @@ std::vector<CaseKey> heat_and_run_rows() {
   return {
       {"heat", "cell_size", at<heat, &H::cell_size>, D::length, {2e-7, 1e-4}, Need::with_part, "",
        "Edge of the cubic cells of heat grid and part, and of the pixels of height maps; divides width and deposition "
-       "length. Where powder is only spread: by default the largest such edge up to 5 um."},
+       "length. Where powder is only spread: by default the largest such edge up to 5 um; verb melt: by default from spot and estimated pool."},
+      {"heat", "size", at<heat, &H::size>, D::length, {2e-5, 0.05}, Need::never, "[]",
+       "[x, y, z] of the plate that the verb melt heats, rounded up to whole cells; empty: from the length of the tracks and an estimate of the pool."},
       {"heat", "substrate_depth", at<heat, &H::substrate_depth>, D::length, {5e-6, 0.01}, Need::never, "\"120 um\"",
        "Depth of the plate that the grid holds, rounded up to whole cells."},
       {"heat", "margin", at<heat, &H::margin>, D::length, {0, 0.01}, Need::never, "\"50 um\"",
@@ -334,7 +336,7 @@ std::vector<CaseKey> const& case_schema() {
   static std::vector<CaseKey> const schema = [] {
     std::vector<CaseKey> rows;
     for (auto const part : {powder_rows, rows_of_names, machine_rows, laser_rows, heat_and_run_rows, calibrate_rows,
-                            absorb_rows, effect_rows, material_rows}) {
+                            absorb_rows, melt_rows, effect_rows, material_rows}) {
       for (CaseKey& row : part()) rows.push_back(std::move(row));
     }
     return rows;
@@ -346,7 +348,8 @@ bool is_needed(CaseKey const& row, Case const& c) {
   bool const counts_grains = name_of(row) == "powder.particles" && c.process == Process::calibrating;
   bool const of_machine = row.table == "machine" || row.table == "heat" || counts_grains;
   if (of_machine && !c.has_machine()) return false;
-  bool const bed_is_there = c.process == Process::absorbing && c.absorb.bed == AbsorbingBed::file;
+  bool const bed_is_there = (c.process == Process::absorbing && c.absorb.bed == AbsorbingBed::file) ||
+                            (c.process == Process::exposing && !c.has_machine());
   if (bed_is_there && (row.table == "contact" || (row.table == "powder" && row.key != "material"))) return false;
   switch (row.need) {
     case Need::always:

@@ -1,5 +1,6 @@
 #include "core/grain_size.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -30,6 +31,10 @@ PowderSettings fed_powder(Case const& checked) {
   double const sum = std::accumulate(powder.fractions.begin(), powder.fractions.end(), 0.0);
   for (double& fraction : powder.fractions) fraction /= sum;
   return powder;
+}
+
+double largest_diameter(PowderSettings const& powder) {
+  return powder.diameters.empty() ? 0.0 : std::ranges::max(powder.diameters);
 }
 
 }  // namespace layerloop

@@ -9,4 +9,7 @@ double mean_grain_volume(PowderSettings const& powder);
 /// The powder as it is fed: its size distribution, with the fines of effects.fines mixed in.
 PowderSettings fed_powder(Case const& checked);
 
+/// 0 without powder [m].
+double largest_diameter(PowderSettings const& powder);
+
 }  // namespace layerloop

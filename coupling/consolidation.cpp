@@ -8,6 +8,7 @@
 
 #include "core/compensated_sum.hpp"
 #include "core/error.hpp"
+#include "core/grain_size.hpp"
 #include "coupling/grain_clearance.hpp"
 #include "coupling/melt_columns.hpp"
 #include "coupling/part_surface_cgal.hpp"
@@ -136,7 +137,7 @@ std::vector<GrainCells> grains_on_lattice(SolidField& solid, PowderBed const& be
   std::int64_t const layer = solid.columns();
   for (std::size_t g = 0; g < bed.size(); ++g) {
     if (!chosen[g]) continue;
-    std::vector<GrainShare> const shares = grain_shares(bed, g, lattice, checked.machine.width);
+    std::vector<GrainShare> const shares = grain_shares(bed, g, lattice, checked.period_y());
     CompensatedSum inside;
     for (GrainShare const& share : shares) inside.add(share.volume);
     double const scale =
@@ -151,7 +152,7 @@ std::vector<GrainCells> grains_on_lattice(SolidField& solid, PowderBed const& be
 
 std::vector<GrainCells> grains_near(SolidField& solid, PowderBed const& bed, Case const& checked,
                                     VoxelGrid const& heated) {
-  double const reach = 2 * *std::max_element(checked.powder.diameters.begin(), checked.powder.diameters.end());
+  double const reach = 2 * largest_diameter(checked.powder);
   return grains_on_lattice(solid, bed, checked, heated.origin.x() - reach, heated.upper().x() + reach);
 }
 

@@ -76,7 +76,10 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
   Exposure exposure;
   HeatSource& source = exposure.source;
   source.tracks = scan_path(checked, layer);
-  exposure.stops = beam_stops(source.tracks, checked.optics.position_spacing);
+  // Without rays a position costs little: one for every cell of travel.
+  double const spacing = checked.laser.absorptivity ? std::min(checked.optics.position_spacing, checked.heat.cell_size)
+                                                    : checked.optics.position_spacing;
+  exposure.stops = beam_stops(source.tracks, spacing);
   source.time.push_back(exposure.stops.front().begin_time);
   for (std::size_t s = 0; s < exposure.stops.size(); ++s) {
     if (exposure.stops[s].begin_time > source.time.back()) {  // the beam was off since the last track

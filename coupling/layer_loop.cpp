@@ -12,14 +12,12 @@
 #include "coupling/checkpoint.hpp"
 #include "coupling/consolidation.hpp"
 #include "coupling/cost.hpp"
-#include "coupling/exposure.hpp"
 #include "coupling/first_bed.hpp"
 #include "coupling/freeze_zone.hpp"
 #include "coupling/layer_output.hpp"
 #include "coupling/ledger.hpp"
 #include "coupling/material_mass.hpp"
-#include "coupling/melt_section.hpp"
-#include "coupling/melt_surface.hpp"
+#include "coupling/melt_layer.hpp"
 #include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
 #include "coupling/solid_on_plate.hpp"
@@ -32,7 +30,6 @@
 #include "dem/machine_rig.hpp"
 #include "dem/recoater.hpp"
 #include "dem/reservoir.hpp"
-#include "thermal/expose.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -128,41 +125,16 @@ void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene,
   for (View const view : views) run.output.picture(scene, build.bed, view, layer);
 }
 
-/// The laser: what this very bed absorbs, and what melts; the beam is traced on what has melted before it.
+/// The laser on the layer as it was spread.
 MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellContent const& cells) {
-  Case const& checked = run.checked;
-  WallTime& wall_time = build.record.wall_time;
-  Exposure exposure = plan_exposure(checked, layer.layer);
-  MeltSurface surface(build.solid, build.bed, build.substrate, cells, checked);
+  MeltSurface surface(build.solid, build.bed, build.substrate, cells, run.checked);
   picture(run, build, surface.scene(), {View::whole_machine, View::oblique, View::from_above}, layer);
-  double tracing = 0;
-  auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
-    Stopwatch const timed(tracing);
-    if (checked.optics.retrace && !checked.laser.absorptivity) surface.update(now.melted());
-    expose_stretch(exposure, stretch, now, surface.scene(), cells, checked, layer.layer, run.comm);
-  };
-  auto const reported = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
-  thermal::HeatOutcome heat;
-  {
-    Stopwatch const timed(wall_time.heat);
-    heat = thermal::expose(cells, exposure.source, checked, run.comm, reported, absorbed_now);
-  }
-  wall_time.rays += tracing;
-  wall_time.heat -= tracing;
-
-  book_light(build.record.ledger, exposure, layer.layer);
-  book_heat(build.record.ledger, heat);
-  layer.absorptivity = exposure.mean.absorptivity;
-  layer.absorptivity_standard_error = exposure.mean.standard_error;
-  layer.mean_bounces = exposure.mean.mean_bounces;
-  layer.rays = exposure.mean.rays;
-  layer.absorbed_energy = absorbed_energy(exposure.source, cells.grid);
-  layer.peak_temperature = heat.peak_temperature;
-  layer.pool = heat.melt.pool;
-  layer.pool_u_num = heat.melt.pool_u_num;
-  layer.sections = melt_sections(heat.melt, cells, exposure.source.tracks);
-  run.output.grid(cells, heat.melt, layer);
-  return heat.melt;
+  auto const report = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
+  MeltedLayer const melted =
+      melt_layer(surface, cells, run.checked, layer.layer, run.comm, report, build.record.wall_time);
+  book_melting(layer, build.record.ledger, melted, cells);
+  run.output.grid(cells, melted.heat.melt, layer);
+  return melted.heat.melt;
 }
 
 /// Pictures of bed and solid as they are now.

@@ -31,6 +31,15 @@ std::vector<double> as_doubles(auto const& values) { return {values.begin(), val
 
 }  // namespace
 
+void write_heat_file(fs::path const& path, CellContent const& cells, MeltRecord const& melt) {
+  std::vector<double> const peak = as_doubles(melt.peak_temperature), melted = as_doubles(melt.melted),
+                            liquid = as_doubles(melt.time_above_liquidus);
+  std::array<Field, 5> const fields{Field{"solid_fraction", "", cells.solid},
+                                    Field{"powder_fraction", "", cells.powder}, Field{"peak_temperature", "K", peak},
+                                    Field{"melted", "", melted}, Field{"time_above_liquidus", "s", liquid}};
+  write_grid_file(path, cells.grid, fields);
+}
+
 LayerOutput::LayerOutput(Case const& checked, fs::path folder, std::vector<BedFormat> exports, Communicator const& comm)
     : checked_(checked), folder_(std::move(folder)), exports_(std::move(exports)), writes_(comm.is_root()) {
   if (!writes_) return;
@@ -74,13 +83,7 @@ void LayerOutput::picture(raytrace::BedScene const& scene, PowderBed const& bed,
 }
 
 void LayerOutput::grid(CellContent const& cells, MeltRecord const& melt, LayerRecord const& layer) const {
-  if (!writes_) return;
-  std::vector<double> const peak = as_doubles(melt.peak_temperature), melted = as_doubles(melt.melted),
-                            liquid = as_doubles(melt.time_above_liquidus);
-  std::array<Field, 5> const fields{Field{"solid_fraction", "", cells.solid},
-                                    Field{"powder_fraction", "", cells.powder}, Field{"peak_temperature", "K", peak},
-                                    Field{"melted", "", melted}, Field{"time_above_liquidus", "s", liquid}};
-  write_grid_file(folder_ / fmt::format("heat_{:04}.h5", layer.layer), cells.grid, fields);
+  if (writes_) write_heat_file(folder_ / fmt::format("heat_{:04}.h5", layer.layer), cells, melt);
 }
 
 void LayerOutput::layer(BuildState& build) const {

@@ -15,6 +15,9 @@ namespace layerloop::coupling {
 /// What a picture shows.
 enum class View { whole_machine, oblique, from_above, part };
 
+/// heat_NNNN.h5: what filled the cells and what the heat did to them. \note root rank only \throws FileError
+void write_heat_file(std::filesystem::path const& path, CellContent const& cells, MeltRecord const& melt);
+
 /// Everything that a run writes into its folder. Only the root rank writes; on the others every call does nothing.
 class LayerOutput {
  public:

@@ -59,7 +59,7 @@ MeltSurface::MeltSurface(SolidField const& solid, PowderBed const& bed, Triangle
       checked_(checked),
       grains_(grains_near(solid_, bed, checked, cells.grid)),
       melted_(static_cast<std::size_t>(cells.grid.size()), 0),
-      scene_(std::make_unique<raytrace::BedScene>(bed, substrate, std::array{0.0, checked.machine.width})) {}
+      scene_(std::make_unique<raytrace::BedScene>(bed, substrate, std::array{0.0, checked.period_y()})) {}
 
 TriangleSurface MeltSurface::surface_of(SolidField const& solid, double x_from, double x_to) const {
   HeightMap const top = top_of_solid(solid, checked_);
@@ -81,7 +81,7 @@ TriangleSurface MeltSurface::surface_of(SolidField const& solid, double x_from, 
   for (std::size_t t = 0; t < substrate_.triangles.size(); ++t) {
     if (!is_replaced(t)) surface.triangles.push_back(substrate_.triangles[t]);
   }
-  double const widest = *std::ranges::max_element(bed_.radius);
+  double const widest = bed_.size() == 0 ? 0.0 : std::ranges::max(bed_.radius);
   add_height_map(surface, top, first, last, static_cast<std::int64_t>(std::ceil(widest / top.spacing)) + 1);
   return surface;
 }
@@ -98,7 +98,7 @@ void MeltSurface::update(std::vector<char> const& melted) {
   left.retain(keep);
   XRange const range = melted_range(heated_, melted_);
   scene_ = std::make_unique<raytrace::BedScene>(left, surface_of(solid, range.from, range.to),
-                                                std::array{0.0, checked_.machine.width});
+                                                std::array{0.0, checked_.period_y()});
 }
 
 }  // namespace layerloop::coupling

@@ -5,6 +5,7 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
+#include <CGAL/Mesh_3/Dump_c3t3.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
@@ -16,7 +17,6 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 #include <CGAL/facets_in_complex_3_to_triangle_mesh.h>
-#include <CGAL/Mesh_3/Dump_c3t3.h>
 // Mesh_3 leaves a dump in the current folder before it throws; what it throws is dealt with here.
 #define dump_c3t3(...) ((void)0)
 #include <CGAL/make_mesh_3.h>
@@ -30,6 +30,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/grain_size.hpp"
 #include "coupling/surface_level.hpp"
 
 namespace layerloop::coupling {
@@ -301,7 +302,7 @@ struct Task {
 
 Task meshing_task(SolidField const& solid, Case const& checked) {
   double const cell = solid.grid.cell;
-  double const largest = *std::max_element(checked.powder.diameters.begin(), checked.powder.diameters.end());
+  double const largest = largest_diameter(checked.powder);
   auto const margin = static_cast<std::int64_t>(std::ceil(0.5 * largest / cell)) + 1;
   auto const across = static_cast<double>(margin + rim);
   double const depth = std::max(std::ceil(checked.heat.substrate_depth / cell), crease_spacing);

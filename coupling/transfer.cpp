@@ -87,7 +87,7 @@ CellContent cell_content(SolidField const& solid, PowderBed const& bed, Case con
       metal = std::min(1.0, fill[static_cast<std::size_t>(solid.grid.index(i + first, j, k - below))]);
     }
   }
-  add_powder(content, bed, checked.machine.width);
+  add_powder(content, bed, checked.period_y());
   return content;
 }
 

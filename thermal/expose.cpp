@@ -96,7 +96,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   double const hottest = hottest_allowed(metal, effect_strength(effects, "evaporation") != 0);
   EnthalpyTable const table(metal, settings.ambient_temperature, hottest);
   double const isotherm = settings.pool_isotherm == "solidus" ? metal.solidus : metal.liquidus;
-  PoolObserver pools(cells, content.solid, source.tracks, isotherm, comm);
+  PoolObserver pools(cells, content, source.tracks, {isotherm, metal.boiling_point}, comm);
 
   HeatGrid const grid(content.grid, side_y == SideY::periodic, comm);
   HeatSystem system =
@@ -140,7 +140,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
                    Report report, AbsorbedNow const& absorbed_now) {
   double const span = content.grid.cell * content.grid.n[1];
-  bool const periodic = std::abs(span - settings.machine.width) < 0.01 * content.grid.cell;
+  bool const periodic = std::abs(span - settings.period_y()) < 0.01 * content.grid.cell;
   return expose(content, source, settings.material, settings.heat, settings.effects,
                 periodic ? SideY::periodic : SideY::far_field, comm, report, absorbed_now);
 }

@@ -44,7 +44,7 @@ using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now
 /// space). HeatSolver::automatic steps explicitly while the beam is on and shortly after, then implicitly with growing
 /// steps.
 ///
-/// \throws InputError    arrays and times that do not fit, a track that does not run along x (before any computing)
+/// \throws InputError    arrays and times that do not fit (before any computing)
 /// \throws PhysicsError  NaN; metal above 1.5 boiling points, or with evaporation 2000 K above it; heat that does not
 /// balance to 1e-9 \throws StoppedBySignal \note Collective. Explicit steps give the same bits for any number of ranks;
 /// implicit ones agree to the solver's tolerance, 1e-12.

@@ -1,17 +1,14 @@
 #include "thermal/pool_observer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-
-#include "core/error.hpp"
 
 namespace layerloop::thermal {
 namespace {
 void max_over_ranks(std::vector<float>& values, Communicator const& comm) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_FLOAT, MPI_MAX, comm.handle());
 }
+
 }  // namespace
 
 std::vector<float> gather(HeatCells const& cells, LocalBox const& box, std::span<float const> own,
@@ -37,15 +34,19 @@ std::vector<float> to_temperature(HeatCells const& cells, EnthalpyTable const& t
   return T;
 }
 
-PoolObserver::PoolObserver(HeatCells const& cells, std::span<double const> solid, std::vector<Track> const& tracks,
-                           double isotherm, Communicator const& comm)
-    : cells_(cells), solid_(solid), tracks_(tracks), isotherm_(isotherm), comm_(comm) {
-  for (Track const& track : tracks) {
-    double const length = std::abs(track.end.x() - track.begin.x());
-    if (std::abs(track.end.y() - track.begin.y()) > 1e-9 * length) {
-      throw InputError(
-          "a track does not run along x (pool sizes are taken in planes across x) set scan.rotation to 0 or 180 deg");
-    }
+PoolObserver::PoolObserver(HeatCells const& cells, CellContent const& content, std::vector<Track> const& tracks,
+                           PoolIsotherms isotherms, Communicator const& comm)
+    : cells_(cells), content_(content), tracks_(tracks), isotherms_(isotherms), comm_(comm) {
+  if (tracks.empty()) return;
+  Track const& track = tracks[tracks.size() / 2];
+  Vec3 const middle = 0.5 * (track.begin + track.end);
+  VoxelGrid const& grid = cells.grid;
+  auto cell = grid.locate(middle);
+  probe_.x = middle.x(), probe_.y = middle.y();
+  for (cell[2] = grid.n[2] - 1; cell[2] >= 0 && probed_ < 0; --cell[2]) {
+    if (!grid.contains(cell)) continue;
+    std::int64_t const c = grid.index(cell[0], cell[1], cell[2]);
+    if (cells.host[static_cast<std::size_t>(c)] == c) probed_ = c;
   }
 }
 
@@ -55,6 +56,7 @@ void PoolObserver::observe(HeatSystem& system, double time) {
     begin_track(system, next_);
   }
   if (next_ == 0) return;
+  if (next_ > tracks_.size() / 2) probe(system, time);
   Track const& track = tracks_[next_ - 1];
   double const passed = (time - track.begin_time) / (track.end_time - track.begin_time);
   double const travel = passed * (track.end - track.begin).norm();
@@ -72,21 +74,33 @@ void PoolObserver::begin_track(HeatSystem& system, std::size_t track) {
   next_ = track + 1;
 }
 
+void PoolObserver::probe(HeatSystem const& system, double time) {
+  std::int64_t const own = probed_ < 0 ? -1 : system.conduction.box.own(cells_.grid.coordinates(probed_));
+  if (own < 0) return;
+  probe_.time.push_back(time);
+  probe_.temperature.push_back(system.table.temperature(system.enthalpy[static_cast<std::size_t>(own)]));
+}
+
 void PoolObserver::end_track(HeatSystem& system) {
   if (next_ == 0) return;
   Track const& track = tracks_[next_ - 1];
-  VoxelGrid const& grid = cells_.grid;
   std::vector<float> const T =
       to_temperature(cells_, system.table, gather(cells_, system.conduction.box, system.peak, comm_));
-  std::vector<PoolSize> sections;
+  Vec3 const along = (track.end - track.begin).normalized();
+  std::vector<TrackSection> sections;
   for (double const place : section_places) {
     Vec3 const at = track.begin + place * (track.end - track.begin);
-    auto const i = grid.locate(at)[0];
-    if (i < 0 || i >= grid.n[0]) continue;
-    auto const size = measure_section(cells_, T, solid_, static_cast<std::int32_t>(i), at.y(), isotherm_);
-    if (size) sections.push_back(*size);
+    auto section = measure_section(cells_, T, content_, at, along, isotherms_.pool);
+    if (!section) continue;
+    section->track = static_cast<std::int32_t>(next_ - 1);
+    section->along = place * (track.end - track.begin).norm();
+    section->x = at.x(), section->y = at.y();
+    if (auto const boiling = measure_section(cells_, T, content_, at, along, isotherms_.boiling))
+      section->boiling_depth = boiling->depth;
+    sections.push_back(*section);
   }
   pools_.push_back(summarise(sections, lengths_));
+  sections_.insert(sections_.end(), sections.begin(), sections.end());
   for (std::size_t c = 0; c < system.peak.size(); ++c) system.peak[c] = std::max(system.peak[c], earlier_peak_[c]);
 }
 
@@ -95,29 +109,40 @@ void PoolObserver::finish(HeatSystem& system) {
   pools_.resize(tracks_.size());
 }
 
-/// The profile along x is the hottest metal within four cells of the track's line, at any height.
+/// The profile along the track is the hottest metal within four cells of its line, at any height.
 double PoolObserver::length_now(HeatSystem const& system, Track const& track) const {
   LocalBox const& box = system.conduction.box;
   VoxelGrid const& grid = cells_.grid;
-  double const period = grid.cell * grid.n[1];
-  std::vector<float> profile(static_cast<std::size_t>(grid.n[0]), 0);
+  std::vector<float> hottest(static_cast<std::size_t>(grid.n[0]) * static_cast<std::size_t>(grid.n[1]), 0);
   for (std::int32_t j = 0; j < box.n[1]; ++j) {
-    double aside = std::abs(grid.centre(0, box.begin[1] + j, 0).y() - track.begin.y());
-    if (cells_.side_y == SideY::periodic) aside = std::abs(std::remainder(aside, period));
-    if (aside > 4 * grid.cell) continue;
     for (std::int32_t k = 0; k < box.n[2]; ++k) {
       for (std::int32_t i = 0; i < box.n[0]; ++i) {
-        auto& hottest = profile[static_cast<std::size_t>(box.begin[0] + i)];
-        hottest = std::max(hottest, static_cast<float>(system.enthalpy[box.index(i, j, k)]));
+        auto& column = hottest[static_cast<std::size_t>(grid.index(box.begin[0] + i, box.begin[1] + j, 0))];
+        column = std::max(column, static_cast<float>(system.enthalpy[box.index(i, j, k)]));
       }
     }
   }
-  max_over_ranks(profile, comm_);
-  for (float& value : profile) value = static_cast<float>(system.table.temperature(value));
-  return measure_length(profile, grid.cell, isotherm_);
+  max_over_ranks(hottest, comm_);
+  SampleLine const line(cells_, 0.5 * (track.begin + track.end), (track.end - track.begin).normalized());
+  std::vector<float> profile;
+  for (std::int64_t step = line.first; step <= line.last; ++step) {
+    double warmest = 0;
+    for (std::int64_t aside = -4; aside <= 4; ++aside) {
+      double T = 0;
+      for (auto const& [i, j, share] : line.corners(step, aside))
+        T += share * system.table.temperature(hottest[static_cast<std::size_t>(grid.index(i, j, 0))]);
+      warmest = std::max(warmest, T);
+    }
+    profile.push_back(static_cast<float>(warmest));
+  }
+  return measure_length(profile, grid.cell, isotherms_.pool);
 }
 
 void PoolObserver::write(MeltRecord& record) const {
+  record.sections = sections_;
+  record.probe = probe_;  // one rank knows it
+  record.probe.time = comm_.all_gather(probe_.time);
+  record.probe.temperature = comm_.all_gather(probe_.temperature);
   PoolSize variance;
   double melting = 0;
   record.pool = {};

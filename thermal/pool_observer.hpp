@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cell_content.hpp"
 #include "core/communicator.hpp"
 #include "core/heat_source.hpp"
 #include "core/melt_record.hpp"
@@ -19,17 +20,21 @@ std::vector<float> gather(HeatCells const& cells, LocalBox const& box, std::span
 std::vector<float> to_temperature(HeatCells const& cells, EnthalpyTable const& table,
                                   std::vector<float> const& enthalpy);
 
-/// Follows the tracks one after another: peak enthalpies of the track that is being scanned, for its sections, and the
-/// length of the pool at instants two cells of travel apart while the beam passes the middle tenth of the track.
+/// Isotherms [K] that pools are measured on.
+struct PoolIsotherms {
+  double pool, boiling;
+};
+
+/// Follows the tracks, in whatever direction they run, one after another: peak enthalpies of the track that is being
+/// scanned, for its sections; the length of the pool at instants two cells of travel apart while the beam passes the
+/// middle tenth of the track; and from the middle track on the temperature of the surface in the middle of it.
 class PoolObserver {
  public:
   /// Where on the track the sections lie.
   static constexpr double section_places[] = {0.25, 0.375, 0.5, 0.625, 0.75};
 
-  /// \param isotherm [K]
-  /// \throws InputError  a track that does not run along x
-  PoolObserver(HeatCells const& cells, std::span<double const> solid, std::vector<Track> const& tracks, double isotherm,
-               Communicator const& comm);
+  PoolObserver(HeatCells const& cells, CellContent const& content, std::vector<Track> const& tracks,
+               PoolIsotherms isotherms, Communicator const& comm);
 
   /// To be called after every step. \note Collective
   void observe(HeatSystem& system, double time);
@@ -41,18 +46,22 @@ class PoolObserver {
  private:
   void begin_track(HeatSystem& system, std::size_t track);
   void end_track(HeatSystem& system);
+  void probe(HeatSystem const& system, double time);
   double length_now(HeatSystem const& system, Track const& track) const;
 
   HeatCells const& cells_;
-  std::span<double const> solid_;
+  CellContent const& content_;
   std::vector<Track> const& tracks_;
-  double isotherm_;
+  PoolIsotherms isotherms_;
   Communicator const& comm_;
+  std::int64_t probed_ = -1;         ///< cell of the grid
   std::size_t next_ = 0;             ///< tracks that have begun
   double last_sample_ = 0;           ///< beam travel at the last length [m]
   std::vector<double> lengths_;      ///< of the present track
   std::vector<float> earlier_peak_;  ///< of the tracks before, and of the time before the first
   std::vector<TrackPool> pools_;
+  std::vector<TrackSection> sections_;
+  ProbeHistory probe_;  ///< of the rank that owns the cell
 };
 
 }  // namespace layerloop::thermal

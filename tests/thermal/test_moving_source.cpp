@@ -156,7 +156,7 @@ TEST(MovingSource, PoolAtTwoAndAHalfMicrometres) {
     double const h = block.system.peak[static_cast<std::size_t>(block.local(i, j, k))];
     peak[static_cast<std::size_t>(content.grid.index(i, j, k))] = static_cast<float>(block.table.temperature(h));
   });
-  auto const pool = measure_section(block.cells, peak, content.solid, 220, 0, melting);
+  auto const pool = measure_section(block.cells, peak, content, {220.5 * cell, 0, 0}, Vec3::UnitX(), melting);
   ASSERT_TRUE(pool);
   std::printf("width %.3f depth %.3f length %.3f um\n", 2e6 * pool->width, 1e6 * pool->depth, 1e6 * length);
   EXPECT_NEAR(2 * pool->width, 102.0976e-6, 0.5e-6);

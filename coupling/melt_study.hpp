@@ -1,0 +1,69 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/case.hpp"
+#include "core/communicator.hpp"
+#include "coupling/build_state.hpp"
+#include "coupling/melt_layer.hpp"
+#include "coupling/melt_plate.hpp"
+
+namespace layerloop::coupling {
+
+struct MeltOptions {
+  std::filesystem::path folder;  ///< results go here; made when missing
+  bool quiet = false;            ///< no progress
+};
+
+/// What a track or patch looks like, from what is in the run.
+enum class Regime { none, no_fusion, conduction, transition, keyhole, balling };
+std::string const& name_of(Regime regime);
+
+/// What the regime is told from. SI.
+struct RegimeSigns {
+  PoolSize pool;
+  double height = 0;         ///< of the molten bead above the surface that the powder was spread on
+  double boiling_depth = 0;  ///< of what was at the boiling point, below that surface
+  double spot_radius = 0;    ///< 1/e2
+  bool molten = false;       ///< any cell
+  bool boils = false;        ///< any cell
+  bool powder = false;
+};
+
+/// none: no cell melts. no_fusion: what melts does not reach below the surface that the powder was spread on. balling:
+/// on powder, a pool longer than its circumference as a free cylinder, pi times its width (Rayleigh and Plateau), most
+/// of which stands above that surface. conduction: the metal stays below the boiling point. keyhole: what boils reaches
+/// deeper than the beam's 1/e2 radius. transition: it boils, but not as deep.
+Regime regime_of(RegimeSigns const& signs);
+
+/// Cooling of the probed surface, from the solidus to 100 K below it, after it was last molten.
+struct CoolingRate {
+  double value = 0;  ///< [K/s]
+  double u_num = 0;  ///< one time step at either end
+};
+/// Nothing when the probe did not melt, or the exposure ended before it was cold. \param isotherm  molten above [K]
+std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidus);
+
+/// One exposure and what explains it.
+struct MeltStudy {
+  Case placed;  ///< with plate and cells as chosen
+  PoolEstimate estimate;
+  BuildState build;
+  MeltedLayer melted;
+  CellContent cells;
+  std::optional<PoolSize> coarse;  ///< pool in cells 1.5 times as large, with melt.two_grids
+  PoolSize u_num;                  ///< of the pool
+  Regime regime = Regime::none;
+  std::optional<CoolingRate> cooling;
+};
+
+/// Exposes a plate or bed to the scan of the case and writes summary.json, sections.csv, probe.csv, heat_0001.h5,
+/// case_resolved.toml, log.jsonl and report.html. \note Collective \throws InputError, FileError, PhysicsError,
+/// StoppedBySignal
+MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator const& comm);
+
+/// Cells of the second grid over those of the first.
+inline constexpr double coarsening = 1.5;
+
+}  // namespace layerloop::coupling
