@@ -114,6 +114,11 @@ std::vector<Effect> heat_effects() {
       {"evaporation", heat, physics, "false", 10, 0.3,
        "Heat carried off by metal vapour.",
        "Hertz-Knudsen; Knight, AIAA J. 17 (1979) 519", "thermal/effects/evaporation.cpp"},
+      {"keyhole", heat, physics, "false", 1, 0.3,
+       "Depression of the melt where the recoil of its vapour exceeds surface tension; light is traced on it anew at "
+       "every cell that it can recede. The strength scales the depth that light sees.",
+       "Kaplan, J. Phys. D 27 (1994) 1805; Semak & Matsunawa, J. Phys. D 30 (1997) 2541",
+       "thermal/effects/keyhole.cpp"},
       {"surface_losses", heat, physics, "false", 100, 1,
        "Radiation and convection from metal that faces gas.",
        "Stefan-Boltzmann; Newton", "thermal/effects/surface_losses.cpp",

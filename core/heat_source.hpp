@@ -20,6 +20,7 @@ struct HeatSource {
   std::vector<double> time;          ///< [s]
   std::vector<AbsorbedPower> power;  ///< [W] per cell
   std::vector<Track> tracks;         ///< for the pool measures
+  double beam_radius = 0;            ///< 1/e^2, on the bed [m]; only a keyhole asks for it
 };
 
 }  // namespace layerloop

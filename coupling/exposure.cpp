@@ -28,14 +28,27 @@ std::vector<BeamStop> beam_stops(std::vector<Track> const& tracks, double spacin
   return stops;
 }
 
+/// Walls of a keyhole recede by at most a cell between two traces [m/s].
+constexpr double drilling_speed = 6;
+
+/// Absorptivity of a cone of a grey material (Gouffe 1945). \param flat  that of the material
+double absorptivity_of_cone(double flat, double radius, double depth) {
+  if (depth == 0) return flat;
+  double const slope2 = radius * radius + depth * depth;
+  double const mouth = radius / std::sqrt(slope2);  // area of the mouth over that of the wall
+  double const seen = radius * radius / slope2;     // solid angle of the mouth from the tip over pi
+  return flat * (1 + (1 - flat) * (mouth - seen)) / (flat * (1 - mouth) + mouth);
+}
+
 /// The given absorptivity instead of a trace: the Gaussian beam on the topmost metal of every column (periodic in y).
-AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, double spot_radius,
-                                    CellContent const& cells) {
+AbsorbedPower prescribed_absorption(BeamStop const& stop, double flat, double spot_radius, CellContent const& cells,
+                                    MeltState const& now) {
   VoxelGrid const& grid = cells.grid;
   double const width = grid.cell * grid.n[1];
   auto const share = [&](double from, double to) {  // of a Gaussian of standard deviation w/2 between two offsets
     return 0.5 * (std::erf(std::sqrt(2.0) * to / spot_radius) - std::erf(std::sqrt(2.0) * from / spot_radius));
   };
+  double const absorptivity = absorptivity_of_cone(flat, now.keyhole_radius, now.keyhole_depth);
   AbsorbedPower power;
   power.incident = stop.power;
   power.absorptivity = absorptivity;
@@ -57,6 +70,10 @@ AbsorbedPower prescribed_absorption(BeamStop const& stop, double absorptivity, d
         return cells.solid[c] + cells.powder[c];
       };
       while (k > 0 && metal(k) < 0.5) --k;
+      if (!now.keyhole.empty()) {
+        double const wall = now.keyhole[static_cast<std::size_t>(i + std::int64_t{grid.n[0]} * j)];
+        while (k > 0 && grid.centre(i, j, k).z() > wall) --k;
+      }
       deposits.emplace_back(grid.index(i, j, k), watts);
       on_grid += watts;
     }
@@ -76,10 +93,14 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
   Exposure exposure;
   HeatSource& source = exposure.source;
   source.tracks = scan_path(checked, layer);
+  source.beam_radius = checked.laser.spot_radius();
   // Without rays a position costs little: one for every cell of travel.
-  double const spacing = checked.laser.absorptivity ? std::min(checked.optics.position_spacing, checked.heat.cell_size)
-                                                    : checked.optics.position_spacing;
+  double spacing = checked.optics.position_spacing;
+  if (checked.laser.absorptivity) spacing = std::min(spacing, checked.heat.cell_size);
+  if (checked.effect_strength("keyhole") != 0)
+    spacing = std::min(spacing, checked.scan.scan_speed * checked.heat.cell_size / drilling_speed);
   exposure.stops = beam_stops(source.tracks, spacing);
+  exposure.stops_per_levelling = static_cast<std::size_t>(std::ceil(checked.optics.position_spacing / spacing - 1e-9));
   source.time.push_back(exposure.stops.front().begin_time);
   for (std::size_t s = 0; s < exposure.stops.size(); ++s) {
     if (exposure.stops[s].begin_time > source.time.back()) {  // the beam was off since the last track
@@ -108,12 +129,12 @@ double beam_on_time(std::span<BeamStop const> stops) {
 
 /// What a stop absorbs of a beam of this power. \param laser  at this time
 AbsorbedPower absorb(Exposure const& exposure, std::size_t s, double beam_power, LaserSettings const& laser,
-                     raytrace::BedScene const& scene, CellContent const& cells, Case const& checked, std::int32_t layer,
-                     Communicator const& comm) {
+                     MeltState const& now, raytrace::BedScene const& scene, CellContent const& cells,
+                     Case const& checked, std::int32_t layer, Communicator const& comm) {
   BeamStop stop = exposure.stops[s];
   stop.power = beam_power;
   if (checked.laser.absorptivity)
-    return prescribed_absorption(stop, *checked.laser.absorptivity, laser.spot_radius(), cells);
+    return prescribed_absorption(stop, *checked.laser.absorptivity, laser.spot_radius(), cells, now);
   raytrace::Beam beam = exposure.beam;
   if (laser.focus_offset != checked.laser.focus_offset) beam = spot_beam(laser, stop.centre, 0);
   beam.centre = stop.centre;
@@ -150,8 +171,8 @@ void expose_stretch(Exposure& exposure, std::size_t stretch, MeltState const& no
   double const on_time = beam_on_time(stops);
   LaserSettings const laser = drifted_laser(checked, (layer - 1) * on_time + beam_on_time(stops.first(s)));
   AbsorbedPower& power = source.power[stretch];
-  power = absorb(exposure, s, stop.power * exposure.plume.transmission(stop.along), laser, scene, cells, checked, layer,
-                 comm);
+  power = absorb(exposure, s, stop.power * exposure.plume.transmission(stop.along), laser, now, scene, cells, checked,
+                 layer, comm);
   book_attenuation(power, stop.power);
   accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / on_time);
   exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(power));

@@ -30,6 +30,7 @@ struct Exposure {
   raytrace::Beam beam;          ///< but for place and power
   raytrace::OpticalSet optics;  ///< of bed and part; none with laser.absorptivity given
   std::vector<BeamStop> stops;
+  std::size_t stops_per_levelling = 1;        ///< a keyhole moves at every stop, the melt levels after some travel
   std::vector<std::int64_t> stop_of_stretch;  ///< of the source; -1: the beam is off
   HeatSource source;                          ///< powers empty until their stretch has been exposed
   AbsorbedPower mean;                         ///< over the time that the beam is on
@@ -41,7 +42,8 @@ struct Exposure {
 Exposure plan_exposure(Case const& checked, std::int32_t layer);
 
 /// Traces the beam at the position of a stretch, on what is left of it by the plume of `now`, and books it. With
-/// laser.absorptivity given, that share of the beam is put on the topmost metal of each column instead. Ranks share the
+/// laser.absorptivity given, that share of the beam is put on the topmost metal of each column instead or, in a
+/// keyhole, the share that a cone of its size absorbs (Gouffe, Rev. Opt. 24 (1945) 1) on its wall. Ranks share the
 /// rays. \note Collective
 void expose_stretch(Exposure& exposure, std::size_t stretch, MeltState const& now, raytrace::BedScene const& scene,
                     CellContent const& cells, Case const& checked, std::int32_t layer, Communicator const& comm);

@@ -12,7 +12,10 @@ MeltedLayer melt_layer(MeltSurface& surface, CellContent const& cells, Case cons
   double tracing = 0;
   auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
     Stopwatch const timed(tracing);
-    if (checked.optics.retrace && !checked.laser.absorptivity) surface.update(now.melted());
+    if (checked.optics.retrace && !checked.laser.absorptivity) {
+      bool const levels = stretch % melted.exposure.stops_per_levelling == 0;
+      levels ? surface.update(now) : surface.sink(now.keyhole);
+    }
     expose_stretch(melted.exposure, stretch, now, surface.scene(), cells, checked, layer, comm);
   };
   {

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/note_once.hpp"
 #include "core/progress.hpp"
+#include "thermal/effects/keyhole.hpp"
 #include "thermal/effects/latent_heat.hpp"
 #include "thermal/effects/variable_conductivity.hpp"
 #include "thermal/exposure.hpp"
@@ -62,19 +63,53 @@ SurfaceSink make_sink(HeatCells const& cells, HeatGrid const& grid, EnthalpyTabl
 /// 1: was above the liquidus. \note Collective
 std::vector<char> melted_cells(HeatSystem const& system, HeatCells const& cells, Communicator const& comm) {
   std::vector<float> const flags(system.melted.begin(), system.melted.end());
-  std::vector<float> const unknowns = gather(cells, system.conduction.box, flags, comm);
+  std::vector<float> const unknowns = gather<float>(cells, system.conduction.box, flags, comm);
   std::vector<char> melted(unknowns.size(), 0);
   for (std::size_t c = 0; c < melted.size(); ++c)
     melted[c] = cells.metal[c] && unknowns[static_cast<std::size_t>(cells.host[c])] > 0;
   return melted;
 }
 
+/// A Gaussian beam has 1 % of its power beyond 1.5 of its 1/e^2 radius.
+constexpr double lit_radii = 1.5;
+
+/// What the beam reaches at a time; nothing while it is off.
+BeamReach reach_at(HeatSource const& source, double time) {
+  for (Track const& track : source.tracks) {
+    if (time < track.begin_time || time > track.end_time) continue;
+    double const share = (time - track.begin_time) / (track.end_time - track.begin_time);
+    return {track.begin + share * (track.end - track.begin), lit_radii * source.beam_radius};
+  }
+  return {Vec3::Zero(), -1};
+}
+
+/// Follows the keyhole to the temperatures of now. \note Collective
+void update(Keyhole& keyhole, HeatSystem& system, HeatCells const& cells, Communicator const& comm,
+            BeamReach const& beam, MeltState& state) {
+  LocalBox const& box = system.conduction.box;
+  std::vector<double> enthalpy = gather<double>(cells, box, system.enthalpy, comm);
+  keyhole.update(enthalpy, system.table, beam);
+  for (std::int64_t const c : keyhole.changed()) {
+    std::int64_t const own = box.own(cells.grid.coordinates(c));
+    if (own < 0) continue;
+    double const h = enthalpy[static_cast<std::size_t>(c)];
+    system.enthalpy[static_cast<std::size_t>(own)] = h;
+    // What light piled up in a cell between two traces is no temperature that metal had.
+    float& peak = system.peak[static_cast<std::size_t>(own)];
+    peak = std::min(peak, static_cast<float>(system.table.enthalpy(keyhole.wall_temperature())));
+  }
+  if (!keyhole.changed().empty()) system.grid.exchange(system.enthalpy);
+  state.keyhole = keyhole.wall();
+  state.keyhole_radius = keyhole.radius();
+  state.keyhole_depth = keyhole.depth();
+}
+
 MeltRecord make_record(HeatSystem const& system, HeatCells const& cells, Communicator const& comm) {
   MeltRecord record;
   record.grid = cells.grid;
   LocalBox const& box = system.conduction.box;
-  record.peak_temperature = to_temperature(cells, system.table, gather(cells, box, system.peak, comm));
-  std::vector<float> const time = gather(cells, box, system.time_above_liquidus, comm);
+  record.peak_temperature = to_temperature(cells, system.table, gather<float>(cells, box, system.peak, comm));
+  std::vector<float> const time = gather<float>(cells, box, system.time_above_liquidus, comm);
   record.melted = melted_cells(system, cells, comm);
   record.time_above_liquidus.assign(time.size(), 0);
   for (std::size_t c = 0; c < time.size(); ++c) {
@@ -106,7 +141,8 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
                        make_sink(cells, grid, table, metal, settings.ambient_temperature, effects));
   Exposure exposure(system, cells, pools, settings.solver, hottest, comm);
   Progress progress("heat", source.time.back() - source.time.front(), report == Report::progress && comm.is_root());
-  MeltState state{.melted = [&] { return melted_cells(system, cells, comm); }, .depression = {}};
+  MeltState state{.melted = [&] { return melted_cells(system, cells, comm); }, .keyhole = {}};
+  Keyhole keyhole(metal, cells, effect_strength(effects, "keyhole"));
   for (std::size_t i = 0; i < source.power.size(); ++i) {
     double const begin = source.time[i], duration = source.time[i + 1] - begin;
     if (duration == 0) continue;
@@ -120,6 +156,8 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
     } else {
       exposure.heat(source.power[i], duration, begin);
     }
+    if (keyhole.acts()) update(keyhole, system, cells, comm, reach_at(source, begin + duration), state);
+    exposure.check_now_and_then();
     state.vapour_rate = (exposure.mass_evaporated() - evaporated) / duration;
     progress.update(source.time[i + 1] - source.time.front());
   }
@@ -130,6 +168,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   outcome.melt = make_record(system, cells, comm);
   pools.write(outcome.melt);
   outcome.peak_temperature = *std::ranges::max_element(outcome.melt.peak_temperature);
+  outcome.keyhole_depth = keyhole.deepest();
   outcome.cells = cells.unknowns;
   if (report == Report::progress && comm.is_root())
     for (std::string const& use : uses_beyond_range(metal, settings.ambient_temperature, outcome.peak_temperature))

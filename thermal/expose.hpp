@@ -25,6 +25,7 @@ struct HeatOutcome {
   double moved_power_share = 0;  ///< of `heat_in` that landed in cells without an unknown and went to their host
   double mass_evaporated = 0;    ///< [kg]
   double peak_temperature = 0;   ///< [K]
+  double keyhole_depth = 0;      ///< deepest that the surface was depressed to [m]; 0 without the effect `keyhole`
   double end_time = 0;           ///< when the last cell froze, or the source ended if that is later [s]
   std::int64_t explicit_steps = 0, implicit_steps = 0;
   std::int64_t cells = 0;  ///< with an unknown
@@ -39,7 +40,7 @@ using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now
 /// Heats the cells with the source, starting from ambient, until the source has ended and nothing is above the solidus.
 ///
 /// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `latent_heat`, `variable_conductivity`,
-/// `evaporation` and `surface_losses` as switched on. Far field: at ambient, heat.substrate_depth below the bottom and
+/// `evaporation`, `surface_losses` and `keyhole` as switched on. Far field: at ambient, heat.substrate_depth below the bottom and
 /// heat.margin beyond the sides (the distance of the heated patch, which is exact for a steady point source on a half
 /// space). HeatSolver::automatic steps explicitly while the beam is on and shortly after, then implicitly with growing
 /// steps.

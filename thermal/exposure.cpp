@@ -57,6 +57,11 @@ void Exposure::heat(AbsorbedPower const& power, double duration, double begin) {
     double const dt = duration / static_cast<double>(count);
     for (std::int64_t i = 0; i < count; ++i) implicit_step(source, dt, begin + static_cast<double>(i + 1) * dt);
   }
+}
+
+void Exposure::check_now_and_then() {
+  if (explicit_count_ + 10 * implicit_count_ < checked_at_ + steps_between_checks) return;
+  checked_at_ = explicit_count_ + 10 * implicit_count_;
   check();
 }
 
@@ -115,10 +120,9 @@ double Exposure::check() {
     throw StoppedBySignal(
         "stopped by a signal while the metal was hot (this layer is lost, earlier ones are on disk) go on with "
         "--resume");
-  CompensatedSum vapour, lost;
-  for (OpenCell const& open : system_.sink.cells) vapour.add(open.evaporated), lost.add(open.lost);
-  evaporated_ = comm_.sum(vapour.value());
-  out_ = evaporated_ + comm_.sum(lost.value() + system_.heat_to_far_field);
+  CompensatedSum lost;
+  for (OpenCell const& open : system_.sink.cells) lost.add(open.lost);
+  out_ = heat_evaporated() + comm_.sum(lost.value() + system_.heat_to_far_field);
   stored_ = comm_.sum(stored_heat(system_));
   if (!std::isfinite(stored_)) {
     throw PhysicsError("the temperature field is not finite (NaN) check the material's tables and the absorbed power");
@@ -139,15 +143,21 @@ double Exposure::check() {
   return hottest;
 }
 
+double Exposure::heat_evaporated() const {
+  CompensatedSum vapour;
+  for (OpenCell const& open : system_.sink.cells) vapour.add(open.evaporated);
+  return comm_.sum(vapour.value());
+}
+
 double Exposure::mass_evaporated() const {
-  return system_.sink.evaporation ? evaporated_ / system_.sink.evaporation->heat_of_vaporisation() : 0;
+  return system_.sink.evaporation ? heat_evaporated() / system_.sink.evaporation->heat_of_vaporisation() : 0;
 }
 
 void Exposure::write(HeatOutcome& outcome) const {
   outcome.heat_in = heat_in_;
   outcome.heat_stored = stored_;
   outcome.heat_out = out_;
-  outcome.heat_evaporated = evaporated_;
+  outcome.heat_evaporated = heat_evaporated();
   outcome.heat_energy_relative_error = error_;
   outcome.moved_power_share = heat_in_ > 0 ? moved_ / heat_in_ : 0;
   outcome.mass_evaporated = mass_evaporated();

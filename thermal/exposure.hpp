@@ -22,10 +22,14 @@ class Exposure {
   /// Beam off until nothing is above the solidus, or nothing gets colder any more. Returns the time that took [s].
   double freeze(double begin);
 
-  double mass_evaporated() const;  ///< so far, over all ranks [kg]
+  /// Whether the state is still physical and heat balances, every so many steps. \note Collective
+  void check_now_and_then();
+
+  double mass_evaporated() const;  ///< so far, over all ranks [kg] \note Collective
   void write(HeatOutcome& outcome) const;
 
  private:
+  double heat_evaporated() const;  ///< so far, over all ranks [J]
   double relax(double duration, double begin, bool until_frozen);
   void explicit_steps(std::vector<CellPower> const& source, double duration, double begin, std::int64_t count);
   std::int64_t implicit_step(std::vector<CellPower> const& source, double dt, double end);
@@ -40,8 +44,8 @@ class Exposure {
   Communicator const& comm_;
   double stable_step_;  ///< explicit [s]
   std::unique_ptr<ImplicitSolver> implicit_;
-  double heat_in_ = 0, moved_ = 0, stored_ = 0, out_ = 0, evaporated_ = 0, error_ = 0;
-  std::int64_t explicit_count_ = 0, implicit_count_ = 0;
+  double heat_in_ = 0, moved_ = 0, stored_ = 0, out_ = 0, error_ = 0;
+  std::int64_t explicit_count_ = 0, implicit_count_ = 0, checked_at_ = 0;  ///< steps; at the last check
 };
 
 }  // namespace layerloop::thermal

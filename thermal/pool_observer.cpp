@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace layerloop::thermal {
 namespace {
-void max_over_ranks(std::vector<float>& values, Communicator const& comm) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_FLOAT, MPI_MAX, comm.handle());
+template <class Real>
+void max_over_ranks(std::vector<Real>& values, Communicator const& comm) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()),
+                std::is_same_v<Real, float> ? MPI_FLOAT : MPI_DOUBLE, MPI_MAX, comm.handle());
 }
 
 }  // namespace
 
-std::vector<float> gather(HeatCells const& cells, LocalBox const& box, std::span<float const> own,
-                          Communicator const& comm) {
-  std::vector<float> field(static_cast<std::size_t>(cells.grid.size()), 0);
+template <class Real>
+std::vector<Real> gather(HeatCells const& cells, LocalBox const& box, std::span<Real const> own,
+                         Communicator const& comm) {
+  std::vector<Real> field(static_cast<std::size_t>(cells.grid.size()), 0);
   for (std::int32_t k = 0; k < box.n[2]; ++k) {
     for (std::int32_t j = 0; j < box.n[1]; ++j) {
       std::copy_n(&own[static_cast<std::size_t>(box.index(0, j, k))], box.n[0],
@@ -23,6 +27,9 @@ std::vector<float> gather(HeatCells const& cells, LocalBox const& box, std::span
   max_over_ranks(field, comm);
   return field;
 }
+
+template std::vector<float> gather(HeatCells const&, LocalBox const&, std::span<float const>, Communicator const&);
+template std::vector<double> gather(HeatCells const&, LocalBox const&, std::span<double const>, Communicator const&);
 
 std::vector<float> to_temperature(HeatCells const& cells, EnthalpyTable const& table,
                                   std::vector<float> const& enthalpy) {
@@ -85,7 +92,7 @@ void PoolObserver::end_track(HeatSystem& system) {
   if (next_ == 0) return;
   Track const& track = tracks_[next_ - 1];
   std::vector<float> const T =
-      to_temperature(cells_, system.table, gather(cells_, system.conduction.box, system.peak, comm_));
+      to_temperature(cells_, system.table, gather<float>(cells_, system.conduction.box, system.peak, comm_));
   Vec3 const along = (track.end - track.begin).normalized();
   std::vector<TrackSection> sections;
   for (double const place : section_places) {

@@ -13,8 +13,9 @@ namespace layerloop::thermal {
 
 /// Largest values over the ranks of what each knows of its own cells, as a field over the whole grid (shape
 /// grid.size()). \note Collective
-std::vector<float> gather(HeatCells const& cells, LocalBox const& box, std::span<float const> own,
-                          Communicator const& comm);
+template <class Real>
+std::vector<Real> gather(HeatCells const& cells, LocalBox const& box, std::span<Real const> own,
+                         Communicator const& comm);
 
 /// Temperature of every cell [K] from such a field of enthalpies; a cell without an unknown shows its host's.
 std::vector<float> to_temperature(HeatCells const& cells, EnthalpyTable const& table,

@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::complex<double> steel{2.96, 4.01};
 
+MeltState state(std::vector<char> melted) {
+  return {.melted = [=] { return melted; }, .keyhole = {}};
+}
+
 /// A square layer of touching grains over the whole pit of 200 x 100 um.
 struct Layer {
   Case checked = small_case();
@@ -46,7 +50,7 @@ TEST(MeltSurface, GrainsThatMeltFlatAbsorbAsAMirrorDoes) {
   Layer const layer;
   MeltSurface surface(layer.solid, layer.bed, layer.substrate, layer.cells, layer.checked);
   double const powder = layer.absorptivity(surface.scene());
-  surface.update(std::vector<char>(static_cast<std::size_t>(layer.cells.grid.size()), 1));
+  surface.update(state(std::vector<char>(static_cast<std::size_t>(layer.cells.grid.size()), 1)));
   double const flat = 1 - raytrace::fresnel_reflectance(steel, 1).average();
   EXPECT_NEAR(layer.absorptivity(surface.scene()), flat, 1e-3);
   EXPECT_GT(powder, flat + 0.1) << "between grains the light is caught";
@@ -63,11 +67,11 @@ TEST(MeltSurface, WhereNothingMeltedGrainsAndPlateStayAsTheyAre) {
   MeltSurface surface(layer.solid, layer.bed, layer.substrate, layer.cells, layer.checked);
   raytrace::BedScene const* const first = &surface.scene();
   std::vector<char> melted(static_cast<std::size_t>(layer.cells.grid.size()), 0);
-  surface.update(melted);
+  surface.update(state(melted));
   EXPECT_EQ(&surface.scene(), first) << "no scene is built anew without new melt";
   for (std::int64_t cell = 0; cell < layer.cells.grid.size(); ++cell)
     melted[static_cast<std::size_t>(cell)] = cell % layer.cells.grid.n[0] < 12;  // x < 180 um: the first three rows
-  surface.update(melted);
+  surface.update(state(melted));
   EXPECT_EQ(surface.scene().grains(), 35);
   for (double x = 200 * um; x < 310 * um; x += 3.3 * um) {
     raytrace::Ray const ray{{x, 31.7 * um, 100 * um}, -Vec3::UnitZ()};

@@ -68,7 +68,7 @@ struct TrackOnPowder {
     double molten = 0;
     auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
       std::vector<char> const melted = now.melted();
-      if (retrace) surface.update(melted);
+      if (retrace) surface.update(now);
       molten = static_cast<double>(std::ranges::count(melted, 1));
       expose_stretch(exposure, stretch, now, surface.scene(), cells, checked, 1, comm);
     };
