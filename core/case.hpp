@@ -36,6 +36,7 @@ enum class MeltedBed { automatic, plate, spread, file };
 enum class ScanKind { track, hatch };
 /// What becomes of a spread layer, or that there is none; the verb decides.
 enum class Process { melting, spreading, calibrating, absorbing, exposing };
+enum class Gas { argon, nitrogen, helium };
 enum class HeatSolver { explicit_steps, implicit_steps, automatic };
 
 struct PowderSettings {
@@ -175,6 +176,8 @@ struct HeatSettings {
   double ambient_temperature = 0;
   HeatSolver solver = HeatSolver::automatic;
   double powder_contact_conductivity = 0;  ///< across faces between different grains [W/(m K)]: gas and point contacts
+  Gas gas = Gas::argon;
+  double gas_pressure = 101325;  ///< [Pa]
   std::string pool_isotherm;               ///< "liquidus" or "solidus"
 };
 

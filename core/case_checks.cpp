@@ -420,8 +420,11 @@ class CaseChecks {
              length(laser.focus_offset));
     if (known({"laser.profile"}) && laser.profile == SpotProfile::file && c_.effect_strength("spot_drift") > 0)
       report("effects.spot_drift.enabled", "= true (the table of laser.profile_file has a fixed size) name a profile");
-    if (c_.effect_strength("plume_attenuation") > 0 && c_.effect_strength("evaporation") == 0)
+    if (c_.has_laser() && c_.effect_strength("plume_attenuation") > 0 && c_.effect_strength("evaporation") == 0)
       report("effects.plume_attenuation.enabled", "= true (nothing evaporates) enable effects.evaporation as well");
+    if (c_.process == Process::melting && c_.effect_strength("heat_accumulation") > 0 && c_.scan.hatch_spacing == 0)
+      report("effects.heat_accumulation.enabled",
+             "= true (how much of the part a track stands for is not known) give scan.hatch_spacing");
     refractive_index();
     optical_effects();
   }

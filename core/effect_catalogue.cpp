@@ -119,11 +119,40 @@ std::vector<Effect> heat_effects() {
        "every cell that it can recede. The strength scales the depth that light sees.",
        "Kaplan, J. Phys. D 27 (1994) 1805; Semak & Matsunawa, J. Phys. D 30 (1997) 2541",
        "thermal/effects/keyhole.cpp"},
+      {"powder_conductivity", heat, physics, "false", 1, 0.5,
+       "Grains pass heat to one another and to the plate through gas around their contacts, which grows with their "
+       "size, with the conductivity of heat.gas and its pressure, instead of as heat.powder_contact_conductivity says.",
+       "Zehner & Schluender, Chem. Ing. Tech. 42 (1970) 933; Sih & Barlow, Part. Sci. Technol. 22 (2004) 427",
+       "thermal/effects/powder_conductivity.cpp",
+       {{"accommodation", D::none, {0.02, 1}, "0.85", 0.1,
+         "Thermal accommodation of the gas on the metal: 0.8 to 0.95 for argon and nitrogen, 0.3 to 0.5 for helium."}}},
+      {"heat_accumulation", heat, physics, "false", 10, 0.5,
+       "Plate and part warm up from layer to layer, as a slab whose bottom is held at heat.ambient_temperature; a layer "
+       "starts from its temperature. Between the tracks of a layer the heat grid keeps the heat itself.",
+       "Carslaw & Jaeger, Conduction of Heat in Solids (1959), 14.3", "coupling/effects/heat_accumulation.cpp",
+       {{"layer_time", D::time, {1e-3, 1e5}, "\"20 s\"", 10, "From the exposure of a layer to that of the next."},
+        {"plate_thickness", D::length, {1e-4, 1}, "\"20 mm\"", 0.01,
+         "From the top of the part down to what is held at heat.ambient_temperature."},
+        {"earlier_layers", D::none, {0, 1e5}, "0", 10, "Layers that were exposed before the first of the case.", 0.0},
+        {"layer_energy", D::surface_energy, {0, 1e8}, "0", 5e5,
+         "Heat that each of these absorbed per area of the part.", 0.0}}},
       {"surface_losses", heat, physics, "false", 100, 1,
        "Radiation and convection from metal that faces gas.",
        "Stefan-Boltzmann; Newton", "thermal/effects/surface_losses.cpp",
        {{"convection", D::heat_transfer, {0, 1e6}, "\"20 W/(m2 K)\"", 30,
          "Heat transfer coefficient to the gas (published models: 10 to 80 W/(m2 K)); 0: radiation alone.", 0.0}}},
+  };
+}
+
+std::vector<Effect> solid_effects() {
+  return {
+      {"denudation", solid, physics, "false", 1, 0.5,
+       "Grains beside a track that the gas draws away after melting; the strength is the probability on its axis.",
+       "Matthews et al., Acta Mater. 114 (2016) 33; Bidare et al., Acta Mater. 142 (2018) 107",
+       "coupling/effects/denudation.cpp",
+       {{"width_factor", D::none, {0, 20}, "2", 0.5,
+         "Distance from the track's axis over laser.spot_diameter at which none is lost any more: 1.5 to 2.5 in argon "
+         "at 1 atm.", 0.0}}},
   };
 }
 
@@ -133,7 +162,7 @@ std::vector<Effect> heat_effects() {
 std::vector<Effect> const& effect_catalogue() {
   static std::vector<Effect> const effects = [] {
     std::vector<Effect> all;
-    for (auto const part : {grain_effects, light_effects, heat_effects})
+    for (auto const part : {grain_effects, light_effects, heat_effects, solid_effects})
       for (Effect& effect : part()) all.push_back(std::move(effect));
     return all;
   }();

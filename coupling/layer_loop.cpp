@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 
 #include "core/case_file.hpp"
 #include "core/error.hpp"
@@ -12,6 +13,8 @@
 #include "coupling/checkpoint.hpp"
 #include "coupling/consolidation.hpp"
 #include "coupling/cost.hpp"
+#include "coupling/effects/denudation.hpp"
+#include "coupling/effects/heat_accumulation.hpp"
 #include "coupling/first_bed.hpp"
 #include "coupling/freeze_zone.hpp"
 #include "coupling/layer_output.hpp"
@@ -125,13 +128,25 @@ void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene,
   for (View const view : views) run.output.picture(scene, build.bed, view, layer);
 }
 
+/// Heat that the layers so far have absorbed, per area of the part [J/m^2].
+std::vector<double> energy_of_layers(RunRecord const& record, Case const& checked) {
+  std::vector<double> energy;
+  for (LayerRecord const& layer : record.layers) {
+    AreaMap const& map = layer.absorbed_energy;
+    energy.push_back(std::reduce(map.values.begin(), map.values.end()) * map.spacing * map.spacing /
+                     part_area(checked));
+  }
+  return energy;
+}
+
 /// The laser on the layer as it was spread.
 MeltRecord expose(Run const& run, BuildState& build, LayerRecord& layer, CellContent const& cells) {
   MeltSurface surface(build.solid, build.bed, build.substrate, cells, run.checked);
   picture(run, build, surface.scene(), {View::whole_machine, View::oblique, View::from_above}, layer);
   auto const report = run.show_progress() ? thermal::Report::progress : thermal::Report::silent;
+  double const start = start_temperature(run.checked, energy_of_layers(build.record, run.checked));
   MeltedLayer const melted =
-      melt_layer(surface, cells, run.checked, layer.layer, run.comm, report, build.record.wall_time);
+      melt_layer(surface, cells, run.checked, start, layer.layer, run.comm, report, build.record.wall_time);
   book_melting(layer, build.record.ledger, melted, cells);
   run.output.grid(cells, melted.heat.melt, layer);
   return melted.heat.melt;
@@ -156,6 +171,7 @@ void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
     MeltRecord const melt = expose(run, build, layer, cells);
     Stopwatch const timed(build.record.wall_time.mesh);
     layer.consolidation = consolidate(build.solid, build.bed, build.substrate, melt, cells, checked);
+    book_lost(build.record.ledger, denude(build.bed, scan_path(checked, layer.layer), checked, layer.layer));
   }
   layer.part_surface = top_of_solid(build.solid, checked);
   show(run, build, {View::part}, layer);

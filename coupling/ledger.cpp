@@ -31,6 +31,11 @@ void book_light(Ledger& ledger, Exposure const& exposure, std::int32_t layer) {
   ledger.ray_energy_relative_error = std::max(ledger.ray_energy_relative_error, exposure.worst_ray_energy_error);
 }
 
+void book_lost(Ledger& ledger, Denuded const& lost) {
+  ledger.particles_lost += lost.grains;
+  ledger.mass_lost += lost.mass;
+}
+
 void book_heat(Ledger& ledger, thermal::HeatOutcome const& heat) {
   ledger.heat_in += heat.heat_in;
   ledger.heat_stored += heat.heat_stored;

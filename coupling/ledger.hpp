@@ -1,6 +1,7 @@
 #pragma once
 #include "core/case.hpp"
 #include "coupling/build_state.hpp"
+#include "coupling/effects/denudation.hpp"
 #include "coupling/exposure.hpp"
 #include "dem/energy_ledger.hpp"
 #include "thermal/expose.hpp"
@@ -9,6 +10,9 @@ namespace layerloop::coupling {
 
 /// Enters the light of one layer: powers are means over the exposures so far, the energy error is the worst position's.
 void book_light(Ledger& ledger, Exposure const& exposure, std::int32_t layer);
+
+/// Enters grains that were drawn away.
+void book_lost(Ledger& ledger, Denuded const& lost);
 
 /// Enters the heat of one layer: energies add, the relative error is the worst layer's.
 void book_heat(Ledger& ledger, thermal::HeatOutcome const& heat);

@@ -6,9 +6,9 @@
 
 namespace layerloop::coupling {
 
-MeltedLayer melt_layer(MeltSurface& surface, CellContent const& cells, Case const& checked, std::int32_t layer,
-                       Communicator const& comm, thermal::Report report, WallTime& wall_time) {
-  MeltedLayer melted{.exposure = plan_exposure(checked, layer), .heat = {}};
+MeltedLayer melt_layer(MeltSurface& surface, CellContent const& cells, Case const& checked, double start_temperature,
+                       std::int32_t layer, Communicator const& comm, thermal::Report report, WallTime& wall_time) {
+  MeltedLayer melted{.exposure = plan_exposure(checked, layer), .start_temperature = start_temperature, .heat = {}};
   double tracing = 0;
   auto const absorbed_now = [&](std::size_t stretch, MeltState const& now) {
     Stopwatch const timed(tracing);
@@ -18,9 +18,11 @@ MeltedLayer melt_layer(MeltSurface& surface, CellContent const& cells, Case cons
     }
     expose_stretch(melted.exposure, stretch, now, surface.scene(), cells, checked, layer, comm);
   };
+  Case warm = checked;
+  warm.heat.ambient_temperature = start_temperature;
   {
     Stopwatch const timed(wall_time.heat);
-    melted.heat = thermal::expose(cells, melted.exposure.source, checked, comm, report, absorbed_now);
+    melted.heat = thermal::expose(cells, melted.exposure.source, warm, comm, report, absorbed_now);
   }
   wall_time.rays += tracing;
   wall_time.heat -= tracing;
@@ -28,7 +30,7 @@ MeltedLayer melt_layer(MeltSurface& surface, CellContent const& cells, Case cons
 }
 
 void book_melting(LayerRecord& layer, Ledger& ledger, MeltedLayer const& melted, CellContent const& cells) {
-  auto const& [exposure, heat] = melted;
+  auto const& [exposure, start_temperature, heat] = melted;
   book_light(ledger, exposure, layer.layer);
   book_heat(ledger, heat);
   layer.absorptivity = exposure.mean.absorptivity;
@@ -36,6 +38,7 @@ void book_melting(LayerRecord& layer, Ledger& ledger, MeltedLayer const& melted,
   layer.mean_bounces = exposure.mean.mean_bounces;
   layer.rays = exposure.mean.rays;
   layer.absorbed_energy = absorbed_energy(exposure.source, cells.grid);
+  layer.start_temperature = start_temperature;
   layer.peak_temperature = heat.peak_temperature;
   layer.pool = heat.melt.pool;
   layer.pool_u_num = heat.melt.pool_u_num;

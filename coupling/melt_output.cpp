@@ -41,6 +41,7 @@ json ledger(MeltStudy const& study) {
   return {{"power_incident", l.power_incident},
           {"power_absorbed", l.power_absorbed},
           {"power_escaped", l.power_escaped},
+          {"power_attenuated", l.power_attenuated},
           {"power_residual", l.power_residual},
           {"power_rescaling", l.power_rescaling},
           {"power_outside_grid", study.melted.exposure.mean.outside_grid},
@@ -92,6 +93,7 @@ json definitions(MeltStudy const& study) {
                              "assumed)"
                            : "half a cell in each direction, combined with the scatter between sections"},
       {"isotherm", "heat.pool_isotherm = " + isotherm},
+      {"start_temperature", "of metal and far field when the exposure began"},
       {"peak_temperature", "highest temperature that any cell reached"},
       {"cooling_rate", "mean between the solidus and 100 K below it at the surface in the middle of the middle track"},
       {"cooling_rate_u_num", "half a time step at either end"},
@@ -135,7 +137,7 @@ double edge_temperature_rise(MeltStudy const& study) {
     if (i > 0 && i < grid.n[0] - 1 && j > 0 && j < grid.n[1] - 1 && k > 0) continue;
     hottest = std::max(hottest, static_cast<double>(melt.peak_temperature[static_cast<std::size_t>(c)]));
   }
-  return hottest - study.placed.heat.ambient_temperature;
+  return hottest - study.melted.start_temperature;
 }
 
 json melt_summary(MeltStudy const& study) {
@@ -149,6 +151,7 @@ json melt_summary(MeltStudy const& study) {
            {"pool", pool(study)},
            {"regime", name_of(study.regime)},
            {"isotherm", study.placed.heat.pool_isotherm},
+           {"start_temperature", study.melted.start_temperature},
            {"peak_temperature", heat.peak_temperature},
            {"cooling_rate", study.cooling ? json(study.cooling->value) : json(nullptr)},
            {"cooling_rate_u_num", study.cooling ? json(study.cooling->u_num) : json(nullptr)},

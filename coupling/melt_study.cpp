@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "coupling/effects/heat_accumulation.hpp"
 #include "coupling/ledger.hpp"
 #include "coupling/melt_output.hpp"
 #include "coupling/part_surface_cgal.hpp"
@@ -34,7 +35,8 @@ Exposed expose(BuildState& build, Case const& placed, Communicator const& comm, 
   CellContent cells =
       cell_content(build.solid, build.bed, placed, placed.machine.deposition_begin(), placed.machine.deposition_end());
   MeltSurface surface(build.solid, build.bed, build.substrate, cells, placed);
-  MeltedLayer melted = melt_layer(surface, cells, placed, 1, comm, report, build.record.wall_time);
+  MeltedLayer melted =
+      melt_layer(surface, cells, placed, start_temperature(placed, {}), 1, comm, report, build.record.wall_time);
   return {std::move(cells), std::move(melted)};
 }
 

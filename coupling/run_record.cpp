@@ -147,6 +147,7 @@ void members(Of<LayerRecord> auto& layer, Visit&& visit) {
   visit("mean_bounces", layer.mean_bounces);
   visit("rays", layer.rays);
   visit("absorbed_energy", layer.absorbed_energy);
+  visit("start_temperature", layer.start_temperature);
   visit("peak_temperature", layer.peak_temperature);
   visit("pool", layer.pool);
   visit("pool_u_num", layer.pool_u_num);
@@ -274,6 +275,7 @@ void add_laser_keys(json& entry, LayerRecord const& layer) {
   entry["absorptivity_u_num"] = layer.absorptivity_standard_error;
   entry["mean_bounces"] = layer.mean_bounces;
   entry["rays"] = layer.rays;
+  entry["start_temperature"] = layer.start_temperature;
   entry["peak_temperature"] = layer.peak_temperature;
   entry["pool"] = encode(layer.pool);
   members(layer.pool_u_num, [&](std::string const& name, double value) { entry["pool"][name + "_u_num"] = value; });
@@ -368,6 +370,7 @@ std::map<std::string, std::string> definitions(ReportExtras const& extras) {
       {"pool.length",
        "largest extent along the track of what is above the isotherm at one instant, mean over the tracks"},
       {"pool.*_u_num", "half a cell in each direction, combined with the scatter between cuts"},
+      {"start_temperature", "of metal, powder and far field when the exposure of the layer began"},
       {"peak_temperature", "highest temperature that any cell reached"},
       {"part_relative_density", "metal over metal and enclosed voids of the part so far, the plate left out"},
       {"grains_trapped", "melted by half or more, but enclosed in the part as whole grains"},

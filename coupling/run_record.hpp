@@ -71,7 +71,8 @@ struct LayerRecord {
   std::vector<MaterialShare> materials;  ///< of a mixture
   double absorptivity = 0, absorptivity_standard_error = 0, mean_bounces = 0;
   std::int64_t rays = 0;
-  AreaMap absorbed_energy;  ///< [J/m^2] over the exposure
+  AreaMap absorbed_energy;       ///< [J/m^2] over the exposure
+  double start_temperature = 0;  ///< of metal, powder and gas when the layer's exposure began [K]
   double peak_temperature = 0;
   PoolSize pool, pool_u_num;
   std::vector<MeltSection> sections;

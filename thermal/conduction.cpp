@@ -104,14 +104,16 @@ std::vector<std::int32_t> copy_cells(Conduction& conduction, HeatCells const& ce
 }
 
 /// Faces between an own cell and its six neighbours.
-void add_faces(Conduction& conduction, std::vector<std::int32_t> const& body, std::int64_t at, double contact) {
+void add_faces(Conduction& conduction, std::vector<std::int32_t> const& body, std::int64_t at, double bulk,
+               ContactLaw const& contact) {
   for (auto const& [axis, step] : directions) {
     std::int64_t const next = at + step * stride(conduction.box, axis);
     if (conduction.fill[next] == 0) continue;
     if (body[at] == body[next]) {
       face_share(conduction, axis)[step < 0 ? next : at] = shared(conduction, at, next);
     } else {
-      conduction.contacts.push_back({at, next, contact * shared(conduction, at, next)});
+      double const layer = contact(body[at], body[next]), series = layer > 0 ? 1 / (1 / bulk + 1 / layer) : 0;
+      conduction.contacts.push_back({at, next, series * shared(conduction, at, next)});
     }
   }
 }
@@ -150,19 +152,18 @@ void Conduction::melt(std::int64_t cell_index) {
 }
 
 Conduction make_conduction(HeatCells const& cells, LocalBox const& box, FarField const& far, double bulk_conductivity,
-                           double contact_conductivity) {
+                           ContactLaw const& contact_conductivity) {
   Conduction conduction;
   conduction.box = box;
   conduction.cell = cells.grid.cell;
   std::vector<std::int32_t> const body = copy_cells(conduction, cells);
   for (int axis = 0; axis < 3; ++axis) face_share(conduction, axis).assign(body.size(), 0);
-  double const contact = contact_conductivity > 0 ? 1 / (1 / bulk_conductivity + 1 / contact_conductivity) : 0;
   for (std::int32_t k = 0; k < box.n[2]; ++k) {
     for (std::int32_t j = 0; j < box.n[1]; ++j) {
       for (std::int32_t i = 0; i < box.n[0]; ++i) {
         std::int64_t const at = box.index(i, j, k);
         if (conduction.fill[at] == 0) continue;
-        add_faces(conduction, body, at, contact);
+        add_faces(conduction, body, at, bulk_conductivity, contact_conductivity);
         if (body[at] < 0) add_far_faces(conduction, cells, {box.begin[0] + i, box.begin[1] + j, box.begin[2] + k}, far);
       }
     }

@@ -1,6 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "thermal/enthalpy_table.hpp"
@@ -39,7 +42,7 @@ struct FarField {
 /// Bulk faces join cells of one body, and any two of which one has been molten, because melt wets what it touches. The
 /// share of the face is the mean of what both sides fill, at most 1: exact inside metal; a thin film on full metal is
 /// not cut off from it as the smaller fill would have it. Contact faces join different bodies: a full cell of metal (k
-/// at the solidus) in series with one of `contact_conductivity`. Gas conducts nothing. Far faces: metal over half a
+/// at the solidus) in series with one of the contact law. Gas conducts nothing. Far faces: metal over half a
 /// cell plus the distance of the far field. Theta is taken from `EnthalpyTable`; every flow is evaluated alike from
 /// both sides, so heat is neither made nor lost.
 struct Conduction {
@@ -62,8 +65,22 @@ struct Conduction {
   void melt(std::int64_t cell);
 };
 
+/// Conductivity [W/(m K)] of a layer one cell thick that stands for the contact of two bodies (as in HeatCells).
+struct ContactLaw {
+  using Pair = std::pair<std::int32_t, std::int32_t>;  ///< ascending
+
+  double everywhere = 0;
+  std::map<Pair, double> of_pair = {};  ///< where it differs
+
+  ContactLaw(double conductivity) : everywhere(conductivity) {}
+  double operator()(std::int32_t a, std::int32_t b) const {
+    auto const found = of_pair.find(std::minmax(a, b));
+    return found == of_pair.end() ? everywhere : found->second;
+  }
+};
+
 Conduction make_conduction(HeatCells const& cells, LocalBox const& box, FarField const& far, double bulk_conductivity,
-                           double contact_conductivity);
+                           ContactLaw const& contact_conductivity);
 
 /// Largest explicit step [s] that keeps every cell between the temperatures of its neighbours, with all faces molten
 /// together and the table's largest diffusivity. \note not collective: the minimum over ranks is the caller's

@@ -11,6 +11,7 @@
 #include "core/progress.hpp"
 #include "thermal/effects/keyhole.hpp"
 #include "thermal/effects/latent_heat.hpp"
+#include "thermal/effects/powder_conductivity.hpp"
 #include "thermal/effects/variable_conductivity.hpp"
 #include "thermal/exposure.hpp"
 
@@ -137,7 +138,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   HeatSystem system =
       make_heat_system(table, grid,
                        make_conduction(cells, grid.box(), {settings.margin, settings.substrate_depth},
-                                       metal.conductivity(metal.solidus), settings.powder_contact_conductivity),
+                                       metal.conductivity(metal.solidus), contact_law(cells, settings, metal, effects)),
                        make_sink(cells, grid, table, metal, settings.ambient_temperature, effects));
   Exposure exposure(system, cells, pools, settings.solver, hottest, comm);
   Progress progress("heat", source.time.back() - source.time.front(), report == Report::progress && comm.is_root());

