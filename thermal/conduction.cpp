@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thermal/bulk_flow.hpp"
+
 namespace layerloop::thermal {
 namespace {
 
@@ -49,21 +51,40 @@ std::vector<Row> rows_with_metal(Conduction const& conduction, std::int32_t laye
   return rows;
 }
 
-/// The longest stretch of a row whose cells are full and joined to all neighbours by whole faces. Melting only joins,
-/// so it stays so.
-Row uniform_stretch(Conduction const& conduction, Row const& row) {
-  std::int64_t const sy = conduction.box.stride_y(), sz = conduction.box.stride_z();
-  auto const is_uniform = [&](std::int64_t c) {
-    return conduction.per_capacity[c] == conduction.full_capacity() && conduction.share_x[c - 1] == 1 &&
-           conduction.share_x[c] == 1 && conduction.share_y[c - sy] == 1 && conduction.share_y[c] == 1 &&
-           conduction.share_z[c - sz] == 1 && conduction.share_z[c] == 1;
-  };
-  Row longest{row.begin, row.begin};
-  for (std::int64_t begin = row.begin; begin < row.end;) {
-    std::int64_t end = begin;
-    while (end < row.end && is_uniform(end)) ++end;
-    if (end - begin > longest.end - longest.begin) longest = {begin, end};
-    begin = std::max(end, begin + 1);
+/// Sides of a cell that are turned to gas, when it is full and its other faces are whole; 255 for other cells.
+std::uint8_t gas_sides(Conduction const& conduction, std::int64_t c) {
+  constexpr std::uint8_t not_uniform = 255;
+  if (conduction.per_capacity[c] != conduction.full_capacity()) return not_uniform;
+  std::uint8_t gas = 0, side = UniformRow::low_x;
+  for (auto const& [axis, step] : directions) {
+    std::int64_t const next = c + step * stride(conduction.box, axis);
+    std::vector<float> const& share = axis == 0   ? conduction.share_x
+                                      : axis == 1 ? conduction.share_y
+                                                  : conduction.share_z;
+    if (conduction.fill[next] == 0) {
+      gas |= side;
+    } else if (share[step < 0 ? next : c] != 1) {
+      return not_uniform;
+    }
+    side = static_cast<std::uint8_t>(side << 1);
+  }
+  return gas;
+}
+
+UniformRow longest_uniform(Conduction const& conduction, Row const& row) {
+  constexpr std::uint8_t along_x = UniformRow::low_x | UniformRow::high_x;
+  UniformRow longest{{row.begin, row.begin}, 0};
+  for (std::int64_t begin = row.begin, end; begin < row.end; begin = end) {
+    std::uint8_t gas = gas_sides(conduction, begin);
+    end = begin + 1;
+    if (gas == 255) continue;
+    while (!(gas & UniformRow::high_x) && end < row.end) {
+      std::uint8_t const next = gas_sides(conduction, end);
+      if (next == 255 || ((next ^ gas) & ~along_x)) break;
+      gas |= next;
+      ++end;
+    }
+    if (end - begin > longest.end - longest.begin) longest = {{begin, end}, gas};
   }
   return longest;
 }
@@ -170,19 +191,31 @@ Conduction make_conduction(HeatCells const& cells, LocalBox const& box, FarField
   }
   conduction.rows = rows_with_metal(conduction, 0, conduction.first_row);
   conduction.rows_with_neighbours = rows_with_metal(conduction, 1, conduction.first_row_with_neighbours);
-  for (Row const& row : conduction.rows) conduction.uniform.push_back(uniform_stretch(conduction, row));
+  for (Row const& row : conduction.rows) conduction.uniform.push_back(longest_uniform(conduction, row));
   conduction.neighbours = neighbours_with_metal(conduction);
   return conduction;
 }
 
+namespace {
+
+/// Largest diffusivity along directions in which the melt conducts `factor` times as well [m^2/s].
+double fastest(Conduction const& conduction, EnthalpyTable const& table, double factor) {
+  double const all = table.max_diffusivity();
+  return conduction.liquid.acts() ? std::max(all, factor * table.max_diffusivity(table.liquidus())) : all;
+}
+
+}  // namespace
+
 double stable_step(Conduction const& conduction, EnthalpyTable const& table) {
-  double const diffusivity = table.max_diffusivity(), slope = table.max_temperature_slope();
+  double const slope = table.max_temperature_slope(), diffusivity = table.max_diffusivity();
+  double const lateral = fastest(conduction, table, conduction.liquid.lateral),
+               vertical = fastest(conduction, table, conduction.liquid.vertical);
   std::vector<double> rate(static_cast<std::size_t>(conduction.box.size()), 0);
   for (Row const& row : conduction.rows) {
     for (std::int64_t c = row.begin; c < row.end; ++c) {
       if (conduction.fill[c] == 0) continue;
       for (auto const& [axis, step] : directions) {
-        rate[c] += diffusivity * shared(conduction, c, c + step * stride(conduction.box, axis));
+        rate[c] += (axis == 2 ? vertical : lateral) * shared(conduction, c, c + step * stride(conduction.box, axis));
       }
     }
   }
@@ -193,31 +226,18 @@ double stable_step(Conduction const& conduction, EnthalpyTable const& table) {
   return largest > 0 ? 1 / largest : std::numeric_limits<double>::infinity();
 }
 
-namespace {
-
-/// Bulk faces of one row. The six flows are added in pairs, in one order for every cell: results depend neither on the
-/// ranks nor, mirrored, on the side.
-void bulk_balance(Conduction const& conduction, Row const& row, double const* __restrict theta,
-                  double* __restrict balance) {
-  float const* const gx = conduction.share_x.data();
-  float const* const gy = conduction.share_y.data();
-  float const* const gz = conduction.share_z.data();
-  std::int64_t const sy = conduction.box.stride_y(), sz = conduction.box.stride_z();
-#pragma omp simd
-  for (std::int64_t c = row.begin; c < row.end; ++c) {
-    double const t = theta[c];
-    double const along_x = gx[c - 1] * (theta[c - 1] - t) + gx[c] * (theta[c + 1] - t);
-    double const along_y = gy[c - sy] * (theta[c - sy] - t) + gy[c] * (theta[c + sy] - t);
-    double const along_z = gz[c - sz] * (theta[c - sz] - t) + gz[c] * (theta[c + sz] - t);
-    balance[c] = along_x + along_y + along_z;
-  }
-}
-
-}  // namespace
-
 double conduction_balance(Conduction const& conduction, EnthalpyTable const& table, std::span<double const> enthalpy,
                           std::span<double const> integral, std::span<double> balance) {
-  for (Row const& row : conduction.rows) bulk_balance(conduction, row, integral.data(), balance.data());
+  BulkFlow const flow(conduction);
+  LiquidConductivity const liquid = conduction.liquid;
+  double const* const values = integral.data();
+  auto const lateral = [=](std::int64_t c) { return liquid.enhanced(values[c], liquid.lateral, liquid.liquidus); };
+  auto const vertical = [=](std::int64_t c) { return liquid.enhanced(values[c], liquid.vertical, liquid.liquidus); };
+  double* __restrict const result = balance.data();
+  for (Row const& row : conduction.rows) {
+#pragma omp simd
+    for (std::int64_t c = row.begin; c < row.end; ++c) result[c] = flow(c, lateral, vertical, vertical, vertical);
+  }
   for (ContactFace const& face : conduction.contacts) {
     balance[face.cell] +=
         face.conductivity * (table.temperature(enthalpy[face.neighbour]) - table.temperature(enthalpy[face.cell]));

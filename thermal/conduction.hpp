@@ -29,6 +29,26 @@ struct Row {
   std::int64_t begin, end;
 };
 
+/// Full cells along x in which every face is either whole or turned to gas, the faces across x only at the two ends.
+/// Melting only joins metal, so it stays so.
+struct UniformRow : Row {
+  enum Side : std::uint8_t { low_x = 1, high_x = 2, low_y = 4, high_y = 8, low_z = 16, high_z = 32 };
+  std::uint8_t gas = 0;  ///< sides without a neighbour
+};
+
+/// How much better the melt conducts than its table says, because it flows. \see effect `marangoni`
+struct LiquidConductivity {
+  double lateral = 1, vertical = 1;  ///< factors along x and y, and along z
+  double liquidus = 0;               ///< Theta above which they act [W/m]
+
+  bool acts() const { return lateral != 1 || vertical != 1; }
+  /// Theta whose differences are the flows along one direction: that of k times the factor. Exact, as Theta is.
+  static double enhanced(double theta, double factor, double liquidus) {
+    double const excess = theta - liquidus;
+    return theta + (factor - 1) * (excess > 0 ? excess : 0);
+  }
+};
+
 /// Distances to the places that stay at ambient temperature [m]; infinite: adiabatic.
 struct FarField {
   double sides = 0;  ///< beyond the x sides, and the y sides when SideY::far_field
@@ -56,8 +76,9 @@ struct Conduction {
   std::vector<Row> rows;  ///< own cells
   std::vector<Row> rows_with_neighbours;
   std::vector<std::size_t> first_row, first_row_with_neighbours;  ///< of every plane along z, and the end of the last
-  std::vector<Row> uniform;  ///< within each of `rows`: full cells, joined to all six neighbours by whole faces
-  std::vector<std::int64_t> neighbours;  ///< cells with metal in the neighbours' layer
+  std::vector<UniformRow> uniform;                                ///< the longest within each of `rows`
+  std::vector<std::int64_t> neighbours;                           ///< cells with metal in the neighbours' layer
+  LiquidConductivity liquid;
 
   double full_capacity() const { return 1 / (cell * cell); }  ///< per_capacity of a full cell [1/m^2]
 

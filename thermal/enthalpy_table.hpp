@@ -26,7 +26,10 @@ class EnthalpyTable {
 
   double solidus() const { return solidus_; }    ///< h where melting begins [J/m^3]
   double liquidus() const { return liquidus_; }  ///< h where it ends [J/m^3]
-  double max_diffusivity() const { return *std::max_element(diffusivity_.begin(), diffusivity_.end()); }
+  /// Of all that is hotter than `from` [J/m^3].
+  double max_diffusivity(double from = 0) const {
+    return *std::max_element(diffusivity_.begin() + interval(from), diffusivity_.end());
+  }
   double max_temperature_slope() const;
 
  private:

@@ -1,46 +1,54 @@
 // The explicit step as one pass over the memory. A plane of cells is looked up, balanced, heated, drained and recorded
-// while it is in the cache: Theta exists for three planes only, the balance for one row. Full cells inside metal need
-// no shares and no capacity, so that a step reads and writes their enthalpy and their peak: 24 bytes.
+// while it is in the cache: Theta exists for three planes only. Full cells between whole faces and gas need no shares
+// and no capacity, so that a step reads and writes their enthalpy and their peak: 24 bytes. Cold metal is left out.
 #include <omp.h>
 
 #include <algorithm>
 
+#include "thermal/bulk_flow.hpp"
 #include "thermal/heat_system.hpp"
 
 namespace layerloop::thermal {
 namespace {
 
+/// Moves to the first entry from `cell` on, in a list that ascends by cell.
+template <class Iterator>
+void skip_to(Iterator& at, Iterator end, std::int64_t cell) {
+  using Entry = std::iter_value_t<Iterator>;
+  if (at != end && at->cell < cell)
+    at = std::lower_bound(at, end, cell, [](Entry const& e, auto c) { return e.cell < c; });
+}
+
 /// A part of the planes along z, worked through upwards by one thread. Enthalpy is updated in place, so Theta of the
 /// planes just below and above is looked up before any thread begins.
 class Slab {
  public:
-  Slab(HeatSystem& system, std::span<CellPower const> source, double dt, int begin, int end,
-       std::array<std::vector<double>, 4>& theta)
+  Slab(HeatSystem& system, std::span<CellPower const> source, double dt, int begin, int end, std::vector<double>& theta)
       : system_(system),
         conduction_(system.conduction),
+        flow_(conduction_),
         dt_(dt),
         begin_(begin),
         end_(end),
+        vertical_(conduction_.liquid.acts() ? 4 : 0),
         theta_(theta),
-        balance_(static_cast<std::size_t>(conduction_.box.stride_y())) {
-    for (auto& plane : theta_) plane.resize(static_cast<std::size_t>(conduction_.box.stride_z()));
-    auto const from = conduction_.box.index(-1, -1, begin);
-    contact_ = std::ranges::lower_bound(conduction_.contacts, from, {}, &ContactFace::cell);
-    far_ = std::ranges::lower_bound(conduction_.far, from, {}, &FarFace::cell);
-    source_ = std::ranges::lower_bound(source, from, {}, &CellPower::cell);
-    source_end_ = source.end();
-    open_ = std::ranges::lower_bound(system.sink.cells, from, {}, &OpenCell::cell);
+        contact_(conduction_.contacts.begin()),
+        far_(conduction_.far.begin()),
+        source_(source.begin()),
+        source_end_(source.end()),
+        open_(system.sink.cells.begin()) {
+    theta_.resize(static_cast<std::size_t>((4 + vertical_) * conduction_.box.stride_z()));
   }
 
   void look_outside() {
-    look_up(begin_ - 1, plane(begin_ - 1));
-    look_up(end_, theta_[3]);
+    look_up(begin_ - 1);
+    look_up(end_);
   }
 
   void advance() {
-    look_up(begin_, plane(begin_));
+    look_up(begin_);
     for (int k = begin_; k < end_; ++k) {
-      if (k + 1 < end_) look_up(k + 1, plane(k + 1));
+      if (k + 1 < end_) look_up(k + 1);
       for (std::size_t r = conduction_.first_row[k]; r < conduction_.first_row[k + 1]; ++r) advance_row(r, k);
     }
   }
@@ -48,83 +56,122 @@ class Slab {
   std::vector<std::int64_t> newly_melted;
 
  private:
-  std::vector<double>& plane(int k) { return theta_[static_cast<std::size_t>(k + 1) % 3]; }
-  double const* theta_of(int k) {
-    auto const& values = k == end_ ? theta_[3] : plane(k);
-    return values.data() - conduction_.box.index(-1, -1, k);  // so that local cell indices fit
+  /// Planes: three in turn and the one above the slab, of Theta as flows along x and y see it, then along z.
+  double* lateral(int k) { return plane(k, 0); }
+  double* vertical(int k) { return plane(k, vertical_); }
+  double* plane(int k, int first) {  // local cell indices fit
+    int const at = first + (k == end_ ? 3 : (k + 1) % 3);
+    return theta_.data() + at * conduction_.box.stride_z() - conduction_.box.index(-1, -1, k);
   }
 
-  double* row_balance() { return balance_.data() - row_begin_; }  ///< so that local cell indices fit
-
-  void look_up(int k, std::vector<double>& values);
+  void look_up(int k);
   void advance_row(std::size_t r, int k);
-  double advance_uniform(Row const& uniform, int k);
-  void balance_faces(Row const& part, int k);
   void add_single_flows(Row const& row, double const* theta);
-  void heat(Row const& part);
+  double advance_uniform(Row part, UniformRow const& uniform, int k);
+  double advance_any(Row const& part, int k);
+  void drain_open_cells(std::vector<OpenCell>::iterator open);
 
   HeatSystem& system_;
   Conduction const& conduction_;
+  BulkFlow flow_;
   double dt_;
   int begin_, end_;
-  std::array<std::vector<double>, 4>& theta_;  ///< three planes in turn, and the one above the slab
-  std::int64_t row_begin_ = 0;
-  std::vector<double> balance_;  ///< of one row [W/m]
+  int vertical_;  ///< first plane for flows along z
+  std::vector<double>& theta_;
+  std::vector<float> peak_before_;  ///< of a row's open cells
   std::vector<ContactFace>::const_iterator contact_;
   std::vector<FarFace>::const_iterator far_;
   std::span<CellPower const>::iterator source_, source_end_;
   std::vector<OpenCell>::iterator open_;
 };
 
-void Slab::look_up(int k, std::vector<double>& values) {
+void Slab::look_up(int k) {
   auto const& first = conduction_.first_row_with_neighbours;
-  std::int64_t const corner = conduction_.box.index(-1, -1, k);
-  double* __restrict const theta = values.data();
-  double const* const h = system_.enthalpy.data() + corner;
+  double const* const h = system_.enthalpy.data();
   EnthalpyTable const& table = system_.table;
+  double const floor = system_.floor, theta_of_floor = floor > 0 ? table.conductivity_integral(floor) : 0;
+  double* __restrict const theta = lateral(k);
+  LiquidConductivity const liquid = conduction_.liquid;
   for (auto r = first[static_cast<std::size_t>(k + 1)]; r < first[static_cast<std::size_t>(k + 2)]; ++r) {
-    Row const& row = conduction_.rows_with_neighbours[r];
+    Row const row = system_.awake.looked_up()[r];
 #pragma omp simd
-    for (std::int64_t c = row.begin - corner; c < row.end - corner; ++c) {
-      theta[c] = table.conductivity_integral(h[c]);
+    for (std::int64_t c = row.begin; c < row.end; ++c) {
+      double const value = table.conductivity_integral(h[c]) - theta_of_floor;
+      theta[c] = h[c] > floor ? value : 0;
+    }
+    if (!liquid.acts()) continue;
+    double* __restrict const along_z = vertical(k);
+#pragma omp simd
+    for (std::int64_t c = row.begin; c < row.end; ++c) {
+      along_z[c] = liquid.enhanced(theta[c], liquid.vertical, liquid.liquidus - theta_of_floor);
+      theta[c] = liquid.enhanced(theta[c], liquid.lateral, liquid.liquidus - theta_of_floor);
     }
   }
 }
 
-/// Inside the uniform stretch there are neither contacts nor open cells nor far faces; a source there sends the whole
-/// row down the general way, which leaves the same bits.
 void Slab::advance_row(std::size_t r, int k) {
-  Row const& row = conduction_.rows[r];
-  Row uniform = conduction_.uniform[r];
-  row_begin_ = row.begin;
-  auto const inside = std::find_if(source_, source_end_, [&](auto const& s) { return s.cell >= uniform.begin; });
-  if (inside != source_end_ && inside->cell < uniform.end) uniform = {row.begin, row.begin};
-  std::array<Row, 2> const rest{Row{row.begin, uniform.begin}, Row{uniform.end, row.end}};
-  double hottest = advance_uniform(uniform, k);
-  for (Row const& part : rest) balance_faces(part, k);
-  add_single_flows(row, theta_of(k));
-  for (Row const& part : rest) heat(part);
-  for (; open_ != system_.sink.cells.end() && open_->cell < row.end; ++open_) {
-    drain(system_.sink, *open_, system_.table, dt_, system_.enthalpy[static_cast<std::size_t>(open_->cell)]);
-  }
-  for (Row const& part : rest) hottest = std::max(hottest, record_peak(system_, part));
+  Row const row = system_.awake.stepped()[r];
+  if (row.begin == row.end) return;
+  UniformRow const& uniform = conduction_.uniform[r];
+  std::int64_t const begin = std::clamp(uniform.begin, row.begin, row.end),
+                     end = std::clamp(uniform.end, begin, row.end);
+  add_single_flows(row, vertical(k));
+  skip_to(open_, system_.sink.cells.end(), row.begin);
+  auto const first_open = open_;
+  peak_before_.clear();
+  for (; open_ != system_.sink.cells.end() && open_->cell < row.end; ++open_)
+    peak_before_.push_back(system_.peak[static_cast<std::size_t>(open_->cell)]);
+  double hottest = advance_uniform({begin, end}, uniform, k);
+  for (Row const& part : {Row{row.begin, begin}, Row{end, row.end}}) hottest = std::max(hottest, advance_any(part, k));
+  drain_open_cells(first_open);
   if (hottest >= system_.table.liquidus()) record_liquid(system_, row, dt_, newly_melted);
 }
 
-/// Full cells between whole faces, in one loop. Returns their largest enthalpy [J/m^3].
-double Slab::advance_uniform(Row const& uniform, int k) {
-  double const *const below = theta_of(k - 1), *const here = theta_of(k), *const above = theta_of(k + 1);
-  std::int64_t const sy = conduction_.box.stride_y(), sz = conduction_.box.stride_z();
+/// Contacts, far field and source heat cell by cell, before the faces in between do.
+void Slab::add_single_flows(Row const& row, double const* theta) {
+  auto const heat = [&](std::int64_t cell, double flow) {
+    system_.enthalpy[cell] += dt_ * conduction_.per_capacity[cell] * flow;
+  };
+  skip_to(contact_, conduction_.contacts.end(), row.begin);
+  for (; contact_ != conduction_.contacts.end() && contact_->cell < row.end; ++contact_) {
+    heat(contact_->cell,
+         system_.scratch.contact_flow[static_cast<std::size_t>(contact_ - conduction_.contacts.begin())]);
+  }
+  skip_to(far_, conduction_.far.end(), row.begin);
+  for (; far_ != conduction_.far.end() && far_->cell < row.end; ++far_) {
+    double const flow = far_->share * theta[far_->cell];
+    heat(far_->cell, -flow);
+    system_.scratch.far_flow[static_cast<std::size_t>(far_ - conduction_.far.begin())] = flow;
+  }
+  skip_to(source_, source_end_, row.begin);
+  for (; source_ != source_end_ && source_->cell < row.end; ++source_) {
+    heat(source_->cell, source_->watts / conduction_.cell);
+  }
+}
+
+/// Full cells between whole faces and gas, in one loop. Where gas is, Theta is that of the cell itself, and no heat
+/// flows. Returns their largest enthalpy [J/m^3].
+double Slab::advance_uniform(Row part, UniformRow const& uniform, int k) {
+  if (part.begin == part.end) return 0;
+  double* const theta = lateral(k);
+  double const* const here_z = vertical(k);
+  if (uniform.gas & UniformRow::low_x && part.begin == uniform.begin) theta[part.begin - 1] = theta[part.begin];
+  if (uniform.gas & UniformRow::high_x && part.end == uniform.end) theta[part.end] = theta[part.end - 1];
+  double const* const here = theta;
+  double const* const low_y = here - (uniform.gas & UniformRow::low_y ? 0 : flow_.sy);
+  double const* const high_y = here + (uniform.gas & UniformRow::high_y ? 0 : flow_.sy);
+  double const* const low_z = uniform.gas & UniformRow::low_z ? here_z : vertical(k - 1) - flow_.sz;
+  double const* const high_z = uniform.gas & UniformRow::high_z ? here_z : vertical(k + 1) + flow_.sz;
   double* __restrict const h = system_.enthalpy.data();
   float* __restrict const peak = system_.peak.data();
   double const full = dt_ * conduction_.full_capacity();
   double hottest = 0;
 #pragma omp simd reduction(max : hottest)
-  for (std::int64_t c = uniform.begin; c < uniform.end; ++c) {
-    double const t = here[c];
+  for (std::int64_t c = part.begin; c < part.end; ++c) {
+    double const t = here[c], v = here_z[c];
     double const along_x = (here[c - 1] - t) + (here[c + 1] - t);
-    double const along_y = (here[c - sy] - t) + (here[c + sy] - t);
-    double const along_z = (below[c - sz] - t) + (above[c + sz] - t);
+    double const along_y = (low_y[c] - t) + (high_y[c] - t);
+    double const along_z = (low_z[c] - v) + (high_z[c] - v);
     double const now = h[c] + full * (along_x + along_y + along_z);
     float const single = static_cast<float>(now);
     h[c] = now;
@@ -134,56 +181,43 @@ double Slab::advance_uniform(Row const& uniform, int k) {
   return hottest;
 }
 
-/// The edges of a uniform stretch are single cells, which a vector's preparation would cost more than it saves.
-/// The six flows are added in pairs, in one order for every cell: results depend neither on the ranks nor, mirrored, on
-/// the side. Where shares are one they may be left out: the bits are the same.
-void Slab::balance_faces(Row const& part, int k) {
-  float const* const gx = conduction_.share_x.data();
-  float const* const gy = conduction_.share_y.data();
-  float const* const gz = conduction_.share_z.data();
-  double const *const below = theta_of(k - 1), *const here = theta_of(k), *const above = theta_of(k + 1);
-  std::int64_t const sy = conduction_.box.stride_y(), sz = conduction_.box.stride_z();
-  double* __restrict const balance = row_balance();
-#pragma omp simd if (part.end - part.begin > 8)
-  for (std::int64_t c = part.begin; c < part.end; ++c) {
-    double const t = here[c];
-    double const along_x = gx[c - 1] * (here[c - 1] - t) + gx[c] * (here[c + 1] - t);
-    double const along_y = gy[c - sy] * (here[c - sy] - t) + gy[c] * (here[c + sy] - t);
-    double const along_z = gz[c - sz] * (below[c - sz] - t) + gz[c] * (above[c + sz] - t);
-    balance[c] = along_x + along_y + along_z;
-  }
-}
-
-/// Contacts, far field and source, cell by cell.
-void Slab::add_single_flows(Row const& row, double const* theta) {
-  double* const balance = row_balance();
-  for (; contact_ != conduction_.contacts.end() && contact_->cell < row.end; ++contact_) {
-    balance[contact_->cell] +=
-        system_.scratch.contact_flow[static_cast<std::size_t>(contact_ - conduction_.contacts.begin())];
-  }
-  for (; far_ != conduction_.far.end() && far_->cell < row.end; ++far_) {
-    double const flow = far_->share * theta[far_->cell];
-    balance[far_->cell] -= flow;
-    system_.scratch.far_flow[static_cast<std::size_t>(far_ - conduction_.far.begin())] = flow;
-  }
-  for (; source_ != source_end_ && source_->cell < row.end; ++source_) {
-    balance[source_->cell] += source_->watts / conduction_.cell;
-  }
-}
-
-void Slab::heat(Row const& part) {
+/// The same with every face's share and every cell's capacity. Where they are whole the bits are the same.
+double Slab::advance_any(Row const& part, int k) {
+  auto const of = [](double const* theta) { return [theta](std::int64_t c) { return theta[c]; }; };
+  auto const here = of(lateral(k)), low_z = of(vertical(k - 1)), here_z = of(vertical(k)), high_z = of(vertical(k + 1));
   double* __restrict const h = system_.enthalpy.data();
-  double const* const balance = row_balance();
+  float* __restrict const peak = system_.peak.data();
   double const* const per_capacity = conduction_.per_capacity.data();
-#pragma omp simd if (part.end - part.begin > 8)
-  for (std::int64_t c = part.begin; c < part.end; ++c) h[c] += dt_ * per_capacity[c] * balance[c];
+  BulkFlow const flow = flow_;
+  double const dt = dt_;
+  double hottest = 0;
+#pragma omp simd reduction(max : hottest) if (part.end - part.begin > 8)
+  for (std::int64_t c = part.begin; c < part.end; ++c) {
+    double const now = h[c] + dt * per_capacity[c] * flow(c, here, low_z, here_z, high_z);
+    float const single = static_cast<float>(now);
+    h[c] = now;
+    peak[c] = single > peak[c] ? single : peak[c];
+    hottest = now > hottest ? now : hottest;
+  }
+  return hottest;
+}
+
+/// A peak counts after the surface has given off its heat.
+void Slab::drain_open_cells(std::vector<OpenCell>::iterator open) {
+  for (float const before : peak_before_) {
+    auto const c = static_cast<std::size_t>(open->cell);
+    double& h = system_.enthalpy[c];
+    if (h > system_.floor) drain(system_.sink, *open, system_.table, dt_, h);
+    system_.peak[c] = std::max(before, static_cast<float>(h));
+    ++open;
+  }
 }
 
 /// Flow through every contact [W/m], from the enthalpies before the step.
 void contact_flows(HeatSystem& system) {
   std::vector<ContactFace> const& contacts = system.conduction.contacts;
   auto const temperature = [&](std::int64_t c) {
-    return system.table.temperature(system.enthalpy[static_cast<std::size_t>(c)]);
+    return system.table.temperature(std::max(system.enthalpy[static_cast<std::size_t>(c)], system.floor));
   };
 #pragma omp for
   for (std::size_t f = 0; f < contacts.size(); ++f) {
@@ -192,25 +226,50 @@ void contact_flows(HeatSystem& system) {
   }
 }
 
+/// First plane of every thread's slab, and the end of the last: about as many awake cells in each.
+std::vector<int> share_out(HeatSystem const& system, int threads) {
+  auto const& first = system.conduction.first_row;
+  std::vector<std::int64_t> until{0};
+  for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+    std::int64_t cells = 0;
+    for (std::size_t r = first[k]; r < first[k + 1]; ++r)
+      cells += system.awake.stepped()[r].end - system.awake.stepped()[r].begin;
+    until.push_back(until.back() + cells);
+  }
+  std::vector<int> begin;
+  for (int t = 0; t < threads; ++t)
+    begin.push_back(static_cast<int>(std::ranges::lower_bound(until, until.back() * t / threads) - until.begin()));
+  begin.front() = 0;
+  begin.push_back(static_cast<int>(until.size()) - 1);
+  return begin;
+}
+
 }  // namespace
 
 void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt) {
-  std::vector<CellPower> ascending(source.begin(), source.end());
-  std::ranges::stable_sort(ascending, {}, &CellPower::cell);
+  std::vector<CellPower> sorted;
+  if (!std::ranges::is_sorted(source, {}, &CellPower::cell)) {
+    sorted.assign(source.begin(), source.end());
+    std::ranges::stable_sort(sorted, {}, &CellPower::cell);
+    source = sorted;
+  }
+  system.awake.update(system.conduction, system.grid, system.enthalpy, system.floor, source);
   system.scratch.contact_flow.resize(system.conduction.contacts.size());
-  system.scratch.far_flow.resize(system.conduction.far.size());
-  int const planes = system.conduction.box.n[2], threads = std::min(omp_get_max_threads(), planes);
+  system.scratch.far_flow.assign(system.conduction.far.size(), 0);
+  int const threads = std::min(omp_get_max_threads(), system.conduction.box.n[2]);
+  std::vector<int> first_plane;
   system.scratch.theta.resize(std::max(system.scratch.theta.size(), static_cast<std::size_t>(threads)));
   std::vector<std::vector<std::int64_t>> newly_melted(static_cast<std::size_t>(threads));
 #pragma omp parallel num_threads(threads)
   {
-    int const t = omp_get_thread_num(), count = omp_get_num_threads();
-    Slab slab(system, ascending, dt, planes * t / count, planes * (t + 1) / count,
-              system.scratch.theta[static_cast<std::size_t>(t)]);
+#pragma omp single
+    first_plane = share_out(system, omp_get_num_threads());
+    auto const t = static_cast<std::size_t>(omp_get_thread_num());
+    Slab slab(system, source, dt, first_plane[t], first_plane[t + 1], system.scratch.theta[t]);
     slab.look_outside();
     contact_flows(system);  // ends with a barrier
     slab.advance();
-    newly_melted[static_cast<std::size_t>(t)] = std::move(slab.newly_melted);
+    newly_melted[t] = std::move(slab.newly_melted);
   }
   double far = 0;
   for (double const flow : system.scratch.far_flow) far += flow;

@@ -13,7 +13,8 @@ std::int64_t LocalBox::own(std::array<std::int32_t, 3> const& cell) const {
   return index(cell[0] - begin[0], cell[1] - begin[1], cell[2] - begin[2]);
 }
 
-HeatGrid::HeatGrid(VoxelGrid const& grid, bool periodic_y, Communicator const& comm) {
+HeatGrid::HeatGrid(VoxelGrid const& grid, bool periodic_y, Communicator const& comm)
+    : cells_(grid.n), periodic_y_(periodic_y), alone_(comm.size() == 1) {
   bool const enough_columns = std::int64_t{grid.n[0]} * grid.n[1] >= 64 * comm.size();
   check_petsc(DMDACreate3d(comm.handle(), DM_BOUNDARY_GHOSTED, periodic_y ? DM_BOUNDARY_PERIODIC : DM_BOUNDARY_GHOSTED,
                            DM_BOUNDARY_GHOSTED, DMDA_STENCIL_STAR, grid.n[0], grid.n[1], grid.n[2], PETSC_DECIDE,
@@ -33,6 +34,21 @@ HeatGrid::HeatGrid(VoxelGrid const& grid, bool periodic_y, Communicator const& c
 }
 
 HeatGrid::~HeatGrid() { DMDestroy(&da_); }
+
+bool HeatGrid::any(bool here) const {
+  if (alone_) return here;
+  int value = here;
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_LOR, PetscObjectComm(reinterpret_cast<PetscObject>(da_)));
+  return value != 0;
+}
+
+void HeatGrid::unite(std::span<std::int32_t> stretches) const {
+  if (alone_) return;
+  for (std::size_t i = 1; i < stretches.size(); i += 2) stretches[i] = -stretches[i];
+  MPI_Allreduce(MPI_IN_PLACE, stretches.data(), static_cast<int>(stretches.size()), MPI_INT32_T, MPI_MIN,
+                PetscObjectComm(reinterpret_cast<PetscObject>(da_)));
+  for (std::size_t i = 1; i < stretches.size(); i += 2) stretches[i] = -stretches[i];
+}
 
 namespace {
 

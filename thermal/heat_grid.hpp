@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/communicator.hpp"
@@ -42,9 +43,18 @@ class HeatGrid {
   /// box().size(). \note Collective
   void exchange(std::vector<double>& values) const;
 
+  std::array<std::int32_t, 3> const& cells() const { return cells_; }  ///< of the whole grid
+  bool periodic_y() const { return periodic_y_; }
+  bool any(bool here) const;  ///< true on some rank \note Collective
+  /// Pairs of begin and end: the smallest begin and the largest end over the ranks. \note Collective
+  void unite(std::span<std::int32_t> stretches) const;
+
  private:
   _p_DM* da_ = nullptr;
   LocalBox box_;
+  std::array<std::int32_t, 3> cells_;
+  bool periodic_y_;
+  bool alone_;                                     ///< one rank
   std::array<std::array<int, 2>, 3> neighbour_{};  ///< ranks below and above along each axis
 };
 

@@ -21,6 +21,8 @@ HeatSystem make_heat_system(EnthalpyTable const& table, HeatGrid const& grid, Co
           std::vector<float>(n, 0),
           std::vector<char>(n, 0),
           0,
+          table.enthalpy(table.temperature(0) + AwakeRows::rise),
+          {},
           {}};
 }
 
@@ -91,6 +93,7 @@ void finish_step(HeatSystem& system, double dt) {
     if (record_peak(system, row) >= system.table.liquidus()) record_liquid(system, row, dt, newly_melted);
   }
   join_melted(system, newly_melted);
+  system.awake.forget();
 }
 
 double stored_heat(HeatSystem const& system) {

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "thermal/awake_rows.hpp"
 #include "thermal/conduction.hpp"
 #include "thermal/enthalpy_table.hpp"
 #include "thermal/heat_grid.hpp"
@@ -9,17 +10,11 @@
 
 namespace layerloop::thermal {
 
-/// Power into one own cell of a rank.
-struct CellPower {
-  std::int64_t cell;  ///< local
-  double watts;
-};
-
 /// What an explicit step keeps from one call to the next, so that it need not allocate.
 struct StepScratch {
-  std::vector<double> contact_flow;                       ///< as conduction.contacts [W/m]
-  std::vector<double> far_flow;                           ///< as conduction.far [W/m]
-  std::vector<std::array<std::vector<double>, 4>> theta;  ///< of each thread: four planes of cells [W/m]
+  std::vector<double> contact_flow;        ///< as conduction.contacts [W/m]
+  std::vector<double> far_flow;            ///< as conduction.far [W/m]
+  std::vector<std::vector<double>> theta;  ///< of each thread: planes of cells [W/m]
 };
 
 /// Everything that one rank steps through time. Shapes of the fields: grid.box().size(), x fastest.
@@ -36,6 +31,8 @@ struct HeatSystem {
   std::vector<float> time_above_liquidus;  ///< [s]
   std::vector<char> melted;                ///< 1: has been at the liquidus
   double heat_to_far_field = 0;            ///< [J] so far, this rank
+  double floor = 0;                        ///< enthalpy up to which explicit steps let metal keep its heat [J/m^3]
+  AwakeRows awake;
   StepScratch scratch;
 
   double metal_volume(std::int64_t cell) const { return conduction.cell / conduction.per_capacity[cell]; }
@@ -59,8 +56,9 @@ void join_melted(HeatSystem& system, std::vector<std::int64_t> const& cells);
 /// \note Collective
 void finish_step(HeatSystem& system, double dt);
 
-/// One forward Euler step: conduction and source, then the sinks; then fetches the neighbours' layer and joins what has
-/// melted. The same bits for any number of ranks and threads. \pre dt <= stable_step \note Collective
+/// One forward Euler step: source and conduction, then the sinks; then fetches the neighbours' layer and joins what has
+/// melted. The same bits for any number of ranks and threads. Cold metal is left out (AwakeRows): call `finish_step`
+/// after the enthalpy was changed by other means. \pre dt <= stable_step \note Collective
 void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt);
 
 /// Heat above ambient in this rank's cells [J].

@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "plate.hpp"
+#include "heated_block.hpp"
+#include "thermal/bulk_flow.hpp"
 #include "thermal/heat_bench.hpp"
 #include "thermal/heat_system.hpp"
 
@@ -34,24 +35,34 @@ struct HotPlate {
 
 /// The same step from its parts, one sweep each: every face with its share, every cell with its capacity.
 void step_by_parts(HeatSystem& system, std::vector<CellPower> const& source, double dt) {
-  double const far =
-      conduction_balance(system.conduction, system.table, system.enthalpy, system.integral, system.balance);
-  for (CellPower const& heated : source)
-    system.balance[static_cast<std::size_t>(heated.cell)] += heated.watts / system.conduction.cell;
-  system.heat_to_far_field += dt * far;
-  for (Row const& row : system.conduction.rows) {
-    for (auto c = static_cast<std::size_t>(row.begin); c < static_cast<std::size_t>(row.end); ++c)
-      system.enthalpy[c] += dt * system.conduction.per_capacity[c] * system.balance[c];
+  Conduction const& conduction = system.conduction;
+  std::vector<double> const before = system.enthalpy;
+  auto const T = [&](std::int64_t c) { return system.table.temperature(before[static_cast<std::size_t>(c)]); };
+  auto const theta = [&](std::int64_t c) { return system.integral[static_cast<std::size_t>(c)]; };
+  auto const heat = [&](std::int64_t c, double flow) {
+    system.enthalpy[static_cast<std::size_t>(c)] += dt * conduction.per_capacity[static_cast<std::size_t>(c)] * flow;
+  };
+  for (ContactFace const& face : conduction.contacts)
+    heat(face.cell, face.conductivity * (T(face.neighbour) - T(face.cell)));
+  for (FarFace const& face : conduction.far) {
+    heat(face.cell, -face.share * theta(face.cell));
+    system.heat_to_far_field += dt * face.share * theta(face.cell) * conduction.cell;
+  }
+  for (CellPower const& heated : source) heat(heated.cell, heated.watts / conduction.cell);
+  BulkFlow const bulk(conduction);
+  for (Row const& row : conduction.rows) {
+    for (std::int64_t c = row.begin; c < row.end; ++c) heat(c, bulk(c, theta, theta, theta, theta));
   }
   finish_step(system, dt);
 }
 
 TEST(ExplicitStep, OnePassHasTheBitsOfItsParts) {
   HotPlate fused, parts;
+  fused.system.floor = -1;  // no cell is too cold to conduct
   std::int64_t uniform = 0;
   for (Row const& row : fused.system.conduction.uniform) uniform += row.end - row.begin;
   EXPECT_GT(uniform, 500);  // both kinds of cells are in it
-  EXPECT_LT(uniform, fused.cells.unknowns - 500);
+  EXPECT_LT(uniform, fused.cells.unknowns - 100);
   EXPECT_FALSE(fused.system.conduction.contacts.empty());
   auto const melted_before = std::ranges::count(fused.system.melted, 1);
   for (int i = 0; i < 100; ++i) {
@@ -68,6 +79,28 @@ TEST(ExplicitStep, OnePassHasTheBitsOfItsParts) {
       ASSERT_EQ(fused.system.melted[c], parts.system.melted[c]);
     }
   }
+}
+
+/// A spot that moves over a plate with grains, cold at first. Leaving cold cells out costs not a bit.
+TEST(ExplicitStep, SleepingCellsLeaveTheSameBits) {
+  auto const run = [](bool all_awake) {
+    CellContent const content = plate_with_grains({40, 28, 16}, 10);
+    HeatedBlock block(content, built_in_materials().at("316L"), {50e-6, 50e-6}, 0.5, SideY::periodic);
+    if (all_awake) block.system.awake.cold = AwakeRows::Cold::awake;
+    double const step = 0.9 * stable_step(block.system.conduction, block.table);
+    std::int64_t awake = 0, cells = 0;
+    for (int i = 0; i < 90; ++i) {
+      std::vector<CellPower> const source{{block.local(8 + i / 6, 27, 9), 0.05}, {block.local(8 + i / 6, 0, 9), 0.05}};
+      explicit_step(block.system, source, step);
+      for (Row const& row : block.system.awake.stepped()) awake += row.end - row.begin;
+      for (Row const& row : block.system.conduction.rows) cells += row.end - row.begin;
+    }
+    double const in = 90 * step * 0.1;
+    EXPECT_NEAR((stored_heat(block.system) + block.system.heat_to_far_field) / in, 1, 1e-13);
+    EXPECT_TRUE(all_awake ? awake == cells : awake < cells / 2) << awake << " of " << cells;
+    return std::pair{block.system.enthalpy, block.system.peak};
+  };
+  EXPECT_EQ(run(false), run(true));
 }
 
 TEST(ExplicitStep, ThreadsLeaveTheSameBits) {
@@ -98,9 +131,8 @@ TEST(HeatBench, CountsWhatItDoes) {
   HeatBench const bench = bench_heat(40 * 40 * 40, 2, 1);
   EXPECT_EQ(bench.cells, 64000);
   EXPECT_GT(bench.liquid_share, 0.005);
-  double const uniform = std::pow(38.0 / 40, 3);  // all but one layer of cells
-  EXPECT_GE(bench.bytes_per_update, 24 + (1 - uniform) * 20);
-  EXPECT_LE(bench.bytes_per_update, 24 + (1 - uniform) * 20 + 9);
+  EXPECT_GE(bench.bytes_per_update, 24);  // enthalpy and peak, and what rows with liquid need
+  EXPECT_LE(bench.bytes_per_update, 24 + 9);
   EXPECT_NEAR(bench.share_of_triad, 24 * bench.cell_updates_per_second / bench.triad_bytes_per_second,
               0.5 * bench.share_of_triad);  // medians of both, and of their ratio
 }
