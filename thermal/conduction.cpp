@@ -145,7 +145,8 @@ void add_far_faces(Conduction& conduction, HeatCells const& cells, std::array<st
   auto const add = [&](double distance) {
     double const fill = std::min(1.0, cells.fill[static_cast<std::size_t>(cells.grid.index(c[0], c[1], c[2]))]);
     double const share = fill * conduction.cell / (distance + 0.5 * conduction.cell);
-    if (share > 0) conduction.far.push_back({conduction.box.own(c), share});
+    std::int64_t const own = conduction.box.own(c);
+    if (share > 0) conduction.far.push_back({own, share, conduction.per_capacity[own]});
   };
   for (auto const& [axis, step] : directions) {
     auto const a = static_cast<std::size_t>(axis);

@@ -20,8 +20,9 @@ struct ContactFace {
 
 /// A face through which heat leaves towards the far field.
 struct FarFace {
-  std::int64_t cell;  ///< local, own
-  double share;       ///< heat flow / (cell size * conductivity integral) [-]
+  std::int64_t cell;    ///< local, own
+  double share;         ///< heat flow / (cell size * conductivity integral) [-]
+  double per_capacity;  ///< of the cell, as in Conduction: here it comes with the stream of faces
 };
 
 /// A stretch of cells along x that holds metal, local indices [begin, end).

@@ -140,7 +140,7 @@ void Slab::add_single_flows(Row const& row, double const* theta) {
   skip_to(far_, conduction_.far.end(), row.begin);
   for (; far_ != conduction_.far.end() && far_->cell < row.end; ++far_) {
     double const flow = far_->share * theta[far_->cell];
-    heat(far_->cell, -flow);
+    system_.enthalpy[far_->cell] -= dt_ * far_->per_capacity * flow;
     system_.scratch.far_flow[static_cast<std::size_t>(far_ - conduction_.far.begin())] = flow;
   }
   skip_to(source_, source_end_, row.begin);

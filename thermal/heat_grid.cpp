@@ -66,7 +66,7 @@ void for_layer(LocalBox const& box, std::size_t axis, std::int32_t at, F const& 
 
 }  // namespace
 
-void HeatGrid::exchange(std::vector<double>& values) const {
+void HeatGrid::exchange(std::span<double> values) const {
   MPI_Comm const comm = PetscObjectComm(reinterpret_cast<PetscObject>(da_));
   std::vector<double> sent, received;
   for (std::size_t axis = 0; axis < 3; ++axis) {

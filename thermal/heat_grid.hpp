@@ -41,7 +41,7 @@ class HeatGrid {
 
   /// Refreshes the faces of the neighbours' layer from their owners (edges and corners are nobody's neighbours). Shape:
   /// box().size(). \note Collective
-  void exchange(std::vector<double>& values) const;
+  void exchange(std::span<double> values) const;
 
   std::array<std::int32_t, 3> const& cells() const { return cells_; }  ///< of the whole grid
   bool periodic_y() const { return periodic_y_; }

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "core/huge_pages.hpp"
 #include "thermal/awake_rows.hpp"
 #include "thermal/conduction.hpp"
 #include "thermal/enthalpy_table.hpp"
@@ -24,14 +25,14 @@ struct HeatSystem {
   Conduction conduction;
   SurfaceSink sink;
 
-  std::vector<double> enthalpy;            ///< per volume of metal, zero at ambient [J/m^3]
-  std::vector<double> integral;            ///< Theta(enthalpy) at the last `finish_step` [W/m]
-  std::vector<double> balance;             ///< scratch [W/m]
-  std::vector<float> peak;                 ///< largest enthalpy since the last reset [J/m^3]
-  std::vector<float> time_above_liquidus;  ///< [s]
-  std::vector<char> melted;                ///< 1: has been at the liquidus
-  double heat_to_far_field = 0;            ///< [J] so far, this rank
-  double floor = 0;                        ///< enthalpy up to which explicit steps let metal keep its heat [J/m^3]
+  std::vector<double, HugePages<double>> enthalpy;  ///< per volume of metal, zero at ambient [J/m^3]
+  std::vector<double> integral;                     ///< Theta(enthalpy) at the last `finish_step` [W/m]
+  std::vector<double> balance;                      ///< scratch [W/m]
+  std::vector<float, HugePages<float>> peak;        ///< largest enthalpy since the last reset [J/m^3]
+  std::vector<float> time_above_liquidus;           ///< [s]
+  std::vector<char> melted;                         ///< 1: has been at the liquidus
+  double heat_to_far_field = 0;                     ///< [J] so far, this rank
+  double floor = 0;  ///< enthalpy up to which explicit steps let metal keep its heat [J/m^3]
   AwakeRows awake;
   StepScratch scratch;
 

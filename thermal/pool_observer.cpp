@@ -74,7 +74,7 @@ void PoolObserver::observe(HeatSystem& system, double time) {
 }
 
 void PoolObserver::begin_track(HeatSystem& system, std::size_t track) {
-  earlier_peak_ = system.peak;
+  earlier_peak_.assign(system.peak.begin(), system.peak.end());
   for (std::size_t c = 0; c < system.peak.size(); ++c) system.peak[c] = static_cast<float>(system.enthalpy[c]);
   lengths_.clear();
   last_sample_ = 0;

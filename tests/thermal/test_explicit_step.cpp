@@ -36,7 +36,7 @@ struct HotPlate {
 /// The same step from its parts, one sweep each: every face with its share, every cell with its capacity.
 void step_by_parts(HeatSystem& system, std::vector<CellPower> const& source, double dt) {
   Conduction const& conduction = system.conduction;
-  std::vector<double> const before = system.enthalpy;
+  auto const before = system.enthalpy;
   auto const T = [&](std::int64_t c) { return system.table.temperature(before[static_cast<std::size_t>(c)]); };
   auto const theta = [&](std::int64_t c) { return system.integral[static_cast<std::size_t>(c)]; };
   auto const heat = [&](std::int64_t c, double flow) {
