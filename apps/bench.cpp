@@ -8,6 +8,7 @@
 #include "apps/verbs.hpp"
 #include "core/bed_file.hpp"
 #include "core/error.hpp"
+#include "core/material.hpp"
 #include "dem/settled_bed_bench.hpp"
 #include "raytrace/ray_bench.hpp"
 #include "thermal/heat_bench.hpp"
@@ -78,7 +79,18 @@ void bench_rays(BenchOptions const& options) {
   fmt::print("{}\n", json.dump(2));
 }
 
+void bench_tracks() {
+  auto run = [&](char const* name, char const* metal, double watts, thermal::TrackSteps steps) {
+    thermal::TrackBench const r = thermal::bench_track(built_in_materials().at(metal), watts, steps);
+    fmt::print("{}: {:.3f} s, {} sweeps, stable {:.3g} s, pool {:.5f} {:.5f} {:.5f} um, heat {:.2g}\n", name, r.seconds, r.sweeps, r.stable_step, 1e6 * r.pool.width, 1e6 * r.pool.depth, 1e6 * r.pool.length, r.heat_error);
+  };
+  if (getenv("ALL")) run("316L all", "316L", 20, thermal::TrackSteps::all_cells);
+  if (getenv("STEEL")) run("316L asleep", "316L", 20, thermal::TrackSteps::cold_cells_asleep);
+  if (!getenv("STEEL")) run("Al asleep", "AlSi10Mg", 36, thermal::TrackSteps::cold_cells_asleep);
+}
+
 void bench_heat(BenchOptions const& options) {
+  if (getenv("TRACKS")) return bench_tracks();
   if (Communicator().size() > 1) {
     throw InputError("bench heat runs on one process (its triad does) leave out mpiexec, and use --threads");
   }

@@ -18,22 +18,24 @@ std::array<std::int32_t, 3> place(LocalBox const& box, std::int64_t cell) {
 }  // namespace
 
 void AwakeRows::update(Conduction const& conduction, HeatGrid const& grid, std::span<double const> enthalpy,
-                       double floor, std::span<CellPower const> source) {
+                       double floor, std::span<CellPower const> source, int passes) {
   if (cold == Cold::awake) {
     stepped_ = conduction.rows;
     looked_up_ = conduction.rows_with_neighbours;
     return;
   }
-  if (source_has_changed(grid, source)) steps_left_ = 0;
-  if (steps_left_-- > 0) return;
+  if (source_has_changed(grid, source)) passes_left_ = 0;
+  passes_left_ -= passes;
+  if (passes_left_ >= 0) return;
   n_ = grid.cells();
   find_warm(conduction, enthalpy, floor, source);
   grid.unite(std::span(reinterpret_cast<std::int32_t*>(warm_.data()), 2 * warm_.size()));
-  widen(steps_between_looks, grid.periodic_y());
+  int const reach = std::max(passes, passes_between_looks);
+  widen(reach, grid.periodic_y());
   cut(conduction.box, conduction.rows, stepped_);
   widen(1, grid.periodic_y());
   cut(conduction.box, conduction.rows_with_neighbours, looked_up_);
-  steps_left_ = steps_between_looks - 1;
+  passes_left_ = reach - passes;
   known_ = true;
 }
 

@@ -25,17 +25,17 @@ class AwakeRows {
   Cold cold = Cold::asleep;
 
   /// To be called before every step. \param floor  enthalpy up to which metal passes nothing on [J/m^3]
-  /// \param source  ascending by cell \note Collective
+  /// \param source  ascending by cell \param passes  how often heat moves by a cell in the step \note Collective
   void update(Conduction const& conduction, HeatGrid const& grid, std::span<double const> enthalpy, double floor,
-              std::span<CellPower const> source);
+              std::span<CellPower const> source, int passes);
   /// The enthalpy has changed by other means than explicit steps.
-  void forget() { steps_left_ = 0, known_ = false; }
+  void forget() { passes_left_ = 0, known_ = false; }
 
   std::span<Row const> stepped() const { return stepped_; }      ///< parts of conduction.rows
   std::span<Row const> looked_up() const { return looked_up_; }  ///< parts of conduction.rows_with_neighbours
 
  private:
-  static constexpr int steps_between_looks = 4;
+  static constexpr int passes_between_looks = 4;
 
   /// Cells [begin, end) of a row, in the grid's coordinates.
   struct Stretch {
@@ -53,7 +53,7 @@ class AwakeRows {
   std::vector<Stretch> scratch_;
   std::vector<Row> stepped_, looked_up_;
   std::vector<std::int64_t> heated_;  ///< cells of the last source
-  int steps_left_ = 0;
+  int passes_left_ = 0;
   bool known_ = false;  ///< cells that are not in `stepped_` are cold
 };
 

@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "core/huge_pages.hpp"
+#include "thermal/exposure.hpp"
 #include "thermal/heat_system.hpp"
 
 namespace layerloop::thermal {
@@ -34,18 +35,22 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-CellContent block(std::int64_t cells) {
+CellContent block(std::array<std::int32_t, 3> const& n, double cell) {
   CellContent content;
-  double const edge = std::cbrt(static_cast<double>(cells));
-  auto const n = std::max(3, static_cast<std::int32_t>(std::lround(edge)));
-  auto const across = static_cast<double>(std::int64_t{n} * n);
-  content.grid.cell = 5e-6;
-  content.grid.n = {n, n, std::max(3, static_cast<std::int32_t>(std::lround(static_cast<double>(cells) / across)))};
+  content.grid.cell = cell;
+  content.grid.n = n;
   auto const size = static_cast<std::size_t>(content.grid.size());
   content.solid.assign(size, 1);
   content.powder.assign(size, 0);
   content.grain.assign(size, -1);
   return content;
+}
+
+CellContent block(std::int64_t cells) {
+  double const edge = std::cbrt(static_cast<double>(cells));
+  auto const n = std::max(3, static_cast<std::int32_t>(std::lround(edge)));
+  auto const across = static_cast<double>(std::int64_t{n} * n);
+  return block({n, n, std::max(3, static_cast<std::int32_t>(std::lround(static_cast<double>(cells) / across)))}, 5e-6);
 }
 
 /// Everything is warm, the middle of the top molten.
@@ -135,6 +140,72 @@ HeatBench bench_heat(std::int64_t cells, std::int64_t steps, int threads) {
   result.bytes_per_update = bytes_per_update(system);
   auto const liquid = std::ranges::count_if(system.enthalpy, [&](double h) { return h >= table.liquidus(); });
   result.liquid_share = static_cast<double>(liquid) / static_cast<double>(result.cells);
+  return result;
+}
+
+namespace {
+
+constexpr double track_speed = 0.5, track_spot = 80e-6, track_time = 1e-3;  // [m/s], D4sigma [m], [s]
+
+/// Powers of a Gaussian beam on the top cells, each cell's part integrated, in stretches of two cells of travel.
+HeatSource gaussian_track(VoxelGrid const& grid, double absorbed) {
+  HeatSource source;
+  double const length = track_speed * track_time, s = std::sqrt(2.0) * track_spot / 4, half = grid.cell / 2;
+  double const begin = 0.5 * (grid.n[0] * grid.cell - length), y = 0.5 * grid.n[1] * grid.cell;
+  auto const stretches = static_cast<int>(std::lround(length / (2 * grid.cell)));
+  auto const part = [&](double from_beam) {
+    return 0.5 * (std::erf((from_beam + half) / s) - std::erf((from_beam - half) / s));
+  };
+  for (int m = 0; m < stretches; ++m) {
+    source.time.push_back(track_time * m / stretches);
+    AbsorbedPower power;
+    for (std::int32_t j = 0; j < grid.n[1]; ++j) {
+      for (std::int32_t i = 0; i < grid.n[0]; ++i) {
+        Vec3 const c = grid.centre(i, j, grid.n[2] - 1);
+        double const watts = absorbed * part(c.x() - begin - length * (m + 0.5) / stretches) * part(c.y() - y);
+        if (watts < 1e-7 * absorbed) continue;
+        power.cell.push_back(grid.index(i, j, grid.n[2] - 1));
+        power.watts.push_back(watts);
+      }
+    }
+    source.power.push_back(power);
+  }
+  source.time.push_back(track_time);
+  source.tracks.push_back({{begin, y, 0}, {begin + length, y, 0}, 0, track_time, absorbed});
+  return source;
+}
+
+}  // namespace
+
+TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps, double cell) {
+  auto const count = [&](double size) { return static_cast<std::int32_t>(std::lround(size / cell)); };
+  CellContent content = block({count(1.0e-3), count(0.4e-3), count(0.3e-3)}, cell);
+  content.grid.origin = {0, 0, -content.grid.n[2] * cell};
+  Communicator const comm;
+  HeatCells const cells = make_heat_cells(content, SideY::far_field);
+  EnthalpyTable const table(metal, ambient, 1.5 * metal.boiling_point);
+  HeatGrid const grid(cells.grid, false, comm);
+  double const far = 0.4e-3;
+  HeatSystem system = make_heat_system(
+      table, grid, make_conduction(cells, grid.box(), {far, far}, metal.conductivity(metal.solidus), 0), {});
+  system.awake.cold = steps == TrackSteps::all_cells ? AwakeRows::Cold::awake : AwakeRows::Cold::asleep;
+  HeatSource const source = gaussian_track(content.grid, absorbed);
+  PoolObserver pools(cells, content.solid, source.tracks, metal.liquidus, comm);
+  Exposure exposure(system, cells, pools, HeatSolver::automatic, 1.5 * metal.boiling_point, comm);
+  TrackBench result{.stable_step = stable_step(system.conduction, table)};
+  result.seconds = seconds([&] {
+    for (std::size_t i = 0; i < source.power.size(); ++i)
+      exposure.heat(source.power[i], source.time[i + 1] - source.time[i], source.time[i]);
+  });
+  pools.finish(system);
+  MeltRecord record;
+  pools.write(record);
+  HeatOutcome outcome;
+  exposure.write(outcome);
+  result.pool = record.pool;
+  result.sweeps = outcome.explicit_steps;
+  if (getenv("RISE")) { double a=0,b=0; for (auto r: system.awake.stepped()) a+=double(r.end-r.begin); for (auto r: system.conduction.rows) b+=double(r.end-r.begin); printf("awake at end %.3f\n", a/b); }
+  result.heat_error = outcome.heat_energy_relative_error;
   return result;
 }
 

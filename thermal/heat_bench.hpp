@@ -1,6 +1,9 @@
 #pragma once
 #include <cstdint>
 
+#include "core/material.hpp"
+#include "core/melt_record.hpp"
+
 namespace layerloop::thermal {
 
 /// How fast explicit steps are, beside a triad a = b + s c over arrays of one double a cell, in turn with them.
@@ -19,5 +22,19 @@ struct HeatBench {
 /// of its top and no cell at ambient. Latent heat and variable conductivity are on; nothing heats it, nothing drains
 /// it. Calls `explicit_step`, which is what an exposure calls. \pre one process, PETSc runs
 HeatBench bench_heat(std::int64_t cells, std::int64_t steps, int threads);
+
+/// One track on a plate of 1.0 x 0.4 x 0.3 mm in cells of 5 um, 1 ms at 0.5 m/s, latent heat and variable conductivity.
+struct TrackBench {
+  double seconds = 0;      ///< of one thread: processor time
+  double stable_step = 0;  ///< [s]
+  std::int64_t sweeps = 0;
+  PoolSize pool = {};
+  double heat_error = 0;  ///< relative, of the ledger
+};
+
+enum class TrackSteps { all_cells, cold_cells_asleep };
+
+/// \param absorbed [W] \pre one process, PETSc runs
+TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps, double cell = 5e-6);
 
 }  // namespace layerloop::thermal

@@ -21,7 +21,7 @@ HeatSystem make_heat_system(EnthalpyTable const& table, HeatGrid const& grid, Co
           std::vector<float>(n, 0),
           std::vector<char>(n, 0),
           0,
-          table.enthalpy(table.temperature(0) + AwakeRows::rise),
+          table.enthalpy(table.temperature(0) + (getenv("RISE") ? atof(getenv("RISE")) : AwakeRows::rise)),
           {},
           {}};
 }
@@ -94,6 +94,12 @@ void finish_step(HeatSystem& system, double dt) {
   }
   join_melted(system, newly_melted);
   system.awake.forget();
+}
+
+std::vector<CellPower> ascending(std::span<CellPower const> source) {
+  std::vector<CellPower> sorted(source.begin(), source.end());
+  if (!std::ranges::is_sorted(sorted, {}, &CellPower::cell)) std::ranges::stable_sort(sorted, {}, &CellPower::cell);
+  return sorted;
 }
 
 double stored_heat(HeatSystem const& system) {

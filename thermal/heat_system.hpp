@@ -13,9 +13,10 @@ namespace layerloop::thermal {
 
 /// What an explicit step keeps from one call to the next, so that it need not allocate.
 struct StepScratch {
-  std::vector<double> contact_flow;        ///< as conduction.contacts [W/m]
-  std::vector<double> far_flow;            ///< as conduction.far [W/m]
-  std::vector<std::vector<double>> theta;  ///< of each thread: planes of cells [W/m]
+  std::vector<double> contact_flow;                                 ///< as conduction.contacts [W/m]
+  std::vector<double> far_flow;                                     ///< as conduction.far [W/m]
+  std::vector<std::vector<double>> theta;                           ///< of each thread: planes of cells [W/m]
+  std::vector<double, HugePages<double>> start, older, start_rate;  ///< of a super step: two stages, dh/dt at its start
 };
 
 /// Everything that one rank steps through time. Shapes of the fields: grid.box().size(), x fastest.
@@ -61,6 +62,18 @@ void finish_step(HeatSystem& system, double dt);
 /// melted. The same bits for any number of ranks and threads. Cold metal is left out (AwakeRows): call `finish_step`
 /// after the enthalpy was changed by other means. \pre dt <= stable_step \note Collective
 void explicit_step(HeatSystem& system, std::span<CellPower const> source, double dt);
+
+/// Stages that a super step needs to be stable. \param stable  the longest explicit step [s]
+int super_step_stages(double dt, double stable);
+
+/// About stages^2 / 4 explicit steps at once, at second order in time: the Runge-Kutta-Legendre scheme RKL2 of Meyer,
+/// Balsara & Aslam, J. Comput. Phys. 257 (2014) 594, for conduction and source; the sinks, implicitly, after them.
+/// Every stage is made of flows, so heat balances to round-off. Peaks and melting are seen at the end of the step only.
+/// \pre stages >= super_step_stages(dt, stable_step) \note Collective
+void super_step(HeatSystem& system, std::span<CellPower const> source, double dt, int stages);
+
+/// The same powers, ascending by cell, as sweeps want them.
+std::vector<CellPower> ascending(std::span<CellPower const> source);
 
 /// Heat above ambient in this rank's cells [J].
 double stored_heat(HeatSystem const& system);

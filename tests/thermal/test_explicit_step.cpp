@@ -40,7 +40,7 @@ void step_by_parts(HeatSystem& system, std::vector<CellPower> const& source, dou
   auto const T = [&](std::int64_t c) { return system.table.temperature(before[static_cast<std::size_t>(c)]); };
   auto const theta = [&](std::int64_t c) { return system.integral[static_cast<std::size_t>(c)]; };
   auto const heat = [&](std::int64_t c, double flow) {
-    system.enthalpy[static_cast<std::size_t>(c)] += dt * conduction.per_capacity[static_cast<std::size_t>(c)] * flow;
+    system.enthalpy[static_cast<std::size_t>(c)] += dt * (conduction.per_capacity[static_cast<std::size_t>(c)] * flow);
   };
   for (ContactFace const& face : conduction.contacts)
     heat(face.cell, face.conductivity * (T(face.neighbour) - T(face.cell)));
