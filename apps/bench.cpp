@@ -23,6 +23,8 @@ struct BenchOptions {
   std::int64_t rays = 300'000;
   bool uniform = false;
   std::int64_t cells = 1'000'000;
+  bool tracks = false, plain = false;
+  double cell = 5e-6, dwell = 0;  // [m], [s]
 };
 
 void bench_dem(BenchOptions const& options) {
@@ -79,21 +81,50 @@ void bench_rays(BenchOptions const& options) {
   fmt::print("{}\n", json.dump(2));
 }
 
-void bench_tracks() {
-  auto run = [&](char const* name, char const* metal, double watts, thermal::TrackSteps steps) {
-    thermal::TrackBench const r = thermal::bench_track(built_in_materials().at(metal), watts, steps);
-    fmt::print("{}: {:.3f} s, {} sweeps, stable {:.3g} s, pool {:.5f} {:.5f} {:.5f} um, heat {:.2g}\n", name, r.seconds, r.sweeps, r.stable_step, 1e6 * r.pool.width, 1e6 * r.pool.depth, 1e6 * r.pool.length, r.heat_error);
+/// A track of 316L with all cells at every step, with cold ones asleep, as chosen automatically; one of AlSi10Mg.
+void bench_tracks(BenchOptions const& options) {
+  using thermal::TrackSteps;
+  omp_set_num_threads(options.threads);
+  nlohmann::ordered_json json{{"cell", options.cell}};
+  auto const run = [&](char const* name, char const* metal, double absorbed, TrackSteps steps) {
+    auto const r = thermal::bench_track(built_in_materials().at(metal), absorbed, steps, options.cell);
+    json[name] = {{"seconds", r.seconds},
+                  {"sweeps", r.sweeps},
+                  {"stable_step", r.stable_step},
+                  {"width", r.pool.width},
+                  {"depth", r.pool.depth},
+                  {"length", r.pool.length},
+                  {"heat_energy_relative_error", r.heat_error}};
+    return r.seconds;
   };
-  if (getenv("ALL")) run("316L all", "316L", 20, thermal::TrackSteps::all_cells);
-  if (getenv("STEEL")) run("316L asleep", "316L", 20, thermal::TrackSteps::cold_cells_asleep);
-  if (!getenv("STEEL")) run("Al asleep", "AlSi10Mg", 36, thermal::TrackSteps::cold_cells_asleep);
+  double const all = run("316L_all_cells", "316L", 20, TrackSteps::all_cells);
+  double const asleep = run("316L", "316L", 20, TrackSteps::automatic);
+  double const aluminium = run("AlSi10Mg", "AlSi10Mg", 36, TrackSteps::automatic);
+  if (options.plain) run("AlSi10Mg_explicit", "AlSi10Mg", 36, TrackSteps::cold_cells_asleep);
+  json["asleep_over_all"] = asleep / all;
+  json["AlSi10Mg_over_316L"] = aluminium / asleep;
+  fmt::print("{}\n", json.dump(2));
+}
+
+void bench_dwell(BenchOptions const& options) {
+  omp_set_num_threads(options.threads);
+  auto const r = thermal::bench_dwell(options.cells, options.dwell, options.plain ? 1.3 : 0);
+  nlohmann::ordered_json const json{{"cells", r.cells},
+                                    {"dwell", options.dwell},
+                                    {"seconds", r.seconds},
+                                    {"sweeps", r.sweeps},
+                                    {"rise", r.rise},
+                                    {"heat_kept", r.heat_kept},
+                                    {"heat_energy_relative_error", r.heat_error}};
+  fmt::print("{}\n", json.dump(2));
 }
 
 void bench_heat(BenchOptions const& options) {
-  if (getenv("TRACKS")) return bench_tracks();
   if (Communicator().size() > 1) {
     throw InputError("bench heat runs on one process (its triad does) leave out mpiexec, and use --threads");
   }
+  if (options.tracks) return bench_tracks(options);
+  if (options.dwell > 0) return bench_dwell(options);
   thermal::HeatBench const r = thermal::bench_heat(options.cells, options.steps, options.threads);
   nlohmann::ordered_json const json{{"cells", r.cells},
                                     {"steps", r.steps},
@@ -131,6 +162,10 @@ void add_bench(CLI::App& program, Action& chosen) {
   heat->add_option("--cells", options->cells, "cells, about")->check(CLI::Range(27, 1'000'000'000));
   heat->add_option("--steps", options->steps, "steps of each of seven rounds")->check(CLI::Range(1, 1'000'000'000));
   heat->add_option("--threads", options->threads, "threads")->check(CLI::Range(1, 1024));
+  heat->add_flag("--tracks", options->tracks, "instead: tracks of 1 ms on a plate of 1.0 x 0.4 x 0.3 mm");
+  heat->add_option("--cell", options->cell, "edge of their cells [m]")->check(CLI::Range(1e-6, 5e-5));
+  heat->add_option("--dwell", options->dwell, "instead: a dwell of a heated plate [s]")->check(CLI::Range(0.0, 1e3));
+  heat->add_flag("--plain", options->plain, "also AlSi10Mg in explicit steps; a dwell in many finer steps");
   heat->callback([=, &chosen] { chosen = [=] { bench_heat(*options); }; });
 }
 

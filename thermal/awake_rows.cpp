@@ -25,12 +25,14 @@ void AwakeRows::update(Conduction const& conduction, HeatGrid const& grid, std::
     return;
   }
   if (source_has_changed(grid, source)) passes_left_ = 0;
+  if (floor < floor_) forget();
+  floor_ = floor;
   passes_left_ -= passes;
   if (passes_left_ >= 0) return;
   n_ = grid.cells();
   find_warm(conduction, enthalpy, floor, source);
   grid.unite(std::span(reinterpret_cast<std::int32_t*>(warm_.data()), 2 * warm_.size()));
-  int const reach = std::max(passes, passes_between_looks);
+  int const reach = std::min(std::max(passes, passes_between_looks), *std::ranges::max_element(n_));
   widen(reach, grid.periodic_y());
   cut(conduction.box, conduction.rows, stepped_);
   widen(1, grid.periodic_y());

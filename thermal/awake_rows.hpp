@@ -19,7 +19,7 @@ struct CellPower {
 /// far around as heat can move before this is looked at again, one cell a step.
 class AwakeRows {
  public:
-  static constexpr double rise = 0.1;  ///< [K]: the error in temperature that far metal is left with, at most
+  static constexpr double rise = 1;  ///< [K]: the error in temperature that far metal is left with, at most
 
   enum class Cold { asleep, awake };
   Cold cold = Cold::asleep;
@@ -35,7 +35,7 @@ class AwakeRows {
   std::span<Row const> looked_up() const { return looked_up_; }  ///< parts of conduction.rows_with_neighbours
 
  private:
-  static constexpr int passes_between_looks = 4;
+  static constexpr int passes_between_looks = 3;
 
   /// Cells [begin, end) of a row, in the grid's coordinates.
   struct Stretch {
@@ -53,6 +53,7 @@ class AwakeRows {
   std::vector<Stretch> scratch_;
   std::vector<Row> stepped_, looked_up_;
   std::vector<std::int64_t> heated_;  ///< cells of the last source
+  double floor_ = 0;
   int passes_left_ = 0;
   bool known_ = false;  ///< cells that are not in `stepped_` are cold
 };

@@ -14,12 +14,16 @@ namespace {
 constexpr double stability_margin = 0.95;
 /// Implicit steps, in units of the stable explicit one: with the beam on, and the first after it.
 constexpr double implicit_stride = 2;
-/// Longest implicit step with the beam off, as a share of the time since then (temperatures fall as a power of time).
-constexpr double implicit_growth = 0.3;
+/// Longest step with the beam off, as a share of the time since then (temperatures fall as a power of time).
+constexpr double growth = 0.3;
 /// More Newton iterations than this halve the next step: freezing fronts cross many cells in it.
 constexpr std::int64_t many_iterations = 12;
-/// Automatic choice: an implicit step costs about as much as this many explicit ones.
-constexpr double implicit_price = 2000;
+/// Automatic choice: super steps where one replaces this many explicit ones for each of its stages.
+constexpr double super_gain = 3;
+/// Super steps in a stretch of constant powers with the beam on, in which it moves by two cells.
+constexpr int super_steps_of_stretch = 2;
+/// Enthalpy, as a share of the largest, up to which metal may sleep with the beam off.
+constexpr double asleep_at_rest = 1e-4;
 constexpr std::int64_t steps_between_checks = 50;
 /// Pools freeze within a millisecond; what is molten after this time has lost touch with the plate, and waits as it is.
 constexpr double longest_freezing = 2e-3;
@@ -49,13 +53,14 @@ void Exposure::heat(AbsorbedPower const& power, double duration, double begin) {
   heat_in_ += watts.value() * duration;
   moved_ += moved.value() * duration;
   bool const implicit = solver_ == HeatSolver::implicit_steps;
-  double const longest = implicit ? implicit_stride * stable_step_ : stable_step_;
-  auto const count = static_cast<std::int64_t>(std::ceil(duration / longest));
-  if (!implicit) {
-    explicit_steps(source, duration, begin, count);
-  } else {
+  if (double const span = duration / super_steps_of_stretch; implicit) {
+    auto const count = static_cast<std::int64_t>(std::ceil(duration / (implicit_stride * stable_step_)));
     double const dt = duration / static_cast<double>(count);
     for (std::int64_t i = 0; i < count; ++i) implicit_step(source, dt, begin + static_cast<double>(i + 1) * dt);
+  } else if (super_steps_pay(span)) {
+    for (int i = 0; i < super_steps_of_stretch; ++i) super_steps(source, span, begin + i * span);
+  } else {
+    explicit_steps(source, duration, begin, static_cast<std::int64_t>(std::ceil(duration / stable_step_)));
   }
 }
 
@@ -70,28 +75,44 @@ void Exposure::rest(double duration, double begin) { relax(duration, begin, fals
 double Exposure::freeze(double begin) { return relax(longest_freezing, begin, true); }
 
 double Exposure::relax(double duration, double begin, bool until_frozen) {
-  double const price = implicit_price * stable_step_, solidus = system_.table.solidus();
+  double const solidus = system_.table.solidus(), floor = system_.floor;
   double elapsed = 0, hottest = check(), implicit_span = implicit_stride * stable_step_;
   while (elapsed < duration && !(until_frozen && hottest < solidus)) {
-    bool const pays = implicit_growth * elapsed > price && duration - elapsed > 4 * price && hottest < solidus;
-    double span = 0;
-    if (solver_ == HeatSolver::implicit_steps || (solver_ == HeatSolver::automatic && pays)) {
-      if (pays) implicit_span = std::max(implicit_span, price);
-      span = std::min(implicit_span, duration - elapsed);
+    double const left = duration - elapsed, long_span = std::min(growth * elapsed, left);
+    double span = std::min(static_cast<double>(steps_between_checks) * stable_step_, left);
+    system_.floor = std::min(floor, asleep_at_rest * hottest);
+    if (solver_ == HeatSolver::implicit_steps) {
+      span = std::min(implicit_span, left);
       std::int64_t const iterations = implicit_step({}, span, begin + elapsed + span);
-      double const factor = iterations > many_iterations ? 0.5 : 1 + implicit_growth;
-      implicit_span =
-          std::max(implicit_stride * stable_step_, std::min(factor * span, implicit_growth * (elapsed + span)));
+      double const factor = iterations > many_iterations ? 0.5 : 1 + growth;
+      implicit_span = std::max(implicit_stride * stable_step_, std::min(factor * span, growth * (elapsed + span)));
+    } else if (hottest < solidus && super_steps_pay(long_span)) {
+      span = long_span;
+      super_steps({}, span, begin + elapsed);
     } else {
-      span = std::min(static_cast<double>(steps_between_checks) * stable_step_, duration - elapsed);
       explicit_steps({}, span, begin + elapsed, static_cast<std::int64_t>(std::ceil(span / stable_step_ - 1e-9)));
     }
-    elapsed = duration - elapsed <= span ? duration : elapsed + span;
+    elapsed = left <= span ? duration : elapsed + span;
     double const now = check();
     if (until_frozen && now >= hottest * (1 - 1e-9) && at_rest(now)) break;
     hottest = now;
   }
+  system_.floor = floor;
+  system_.awake.forget();
   return elapsed;
+}
+
+bool Exposure::super_steps_pay(double span) const {
+  bool const evaporates = system_.sink.evaporation && hottest_ > system_.sink.evaporation_onset;
+  return solver_ == HeatSolver::automatic && !evaporates &&
+         span > super_gain * stable_step_ * super_step_stages(span, stable_step_);
+}
+
+void Exposure::super_steps(std::vector<CellPower> const& source, double span, double begin) {
+  int const stages = super_step_stages(span, stable_step_);
+  super_step(system_, source, span, stages);
+  pools_.observe(system_, begin + span);
+  explicit_count_ += stages;
 }
 
 bool Exposure::at_rest(double hottest) {
@@ -100,17 +121,6 @@ bool Exposure::at_rest(double hottest) {
 
 void Exposure::explicit_steps(std::vector<CellPower> const& source, double duration, double begin, std::int64_t count) {
   double const dt = duration / static_cast<double>(count);
-  static double const super = getenv("SUPER") ? atof(getenv("SUPER")) : 0;
-  if (super > 0) {
-    auto const m = static_cast<std::int64_t>(std::ceil(static_cast<double>(count) / super));
-    int const s = super_step_stages(duration / static_cast<double>(m), stable_step_);
-    for (std::int64_t i = 0; i < m; ++i) {
-      super_step(system_, source, duration / static_cast<double>(m), s);
-      pools_.observe(system_, begin + static_cast<double>(i + 1) * duration / static_cast<double>(m));
-    }
-    explicit_count_ += m * s;
-    return;
-  }
   for (std::int64_t i = 0; i < count; ++i) {
     explicit_step(system_, source, dt);
     pools_.observe(system_, begin + static_cast<double>(i + 1) * dt);
@@ -133,12 +143,12 @@ double Exposure::check() {
         "--resume");
   CompensatedSum lost;
   for (OpenCell const& open : system_.sink.cells) lost.add(open.lost);
-  out_ = heat_evaporated() + comm_.sum(lost.value() + system_.heat_to_far_field);
+  out_ = heat_evaporated() + comm_.sum(lost.value() + system_.sink.lost + system_.heat_to_far_field);
   stored_ = comm_.sum(stored_heat(system_));
   if (!std::isfinite(stored_)) {
     throw PhysicsError("the temperature field is not finite (NaN) check the material's tables and the absorbed power");
   }
-  double const hottest = comm_.max(thermal::hottest(system_)), T = system_.table.temperature(hottest);
+  double const hottest = hottest_ = comm_.max(thermal::hottest(system_)), T = system_.table.temperature(hottest);
   if (T > hottest_allowed_) {
     throw PhysicsError(
         fmt::format("the metal reaches {:.0f} K (the model ends at {:.0f} K: real metal would have boiled away) "

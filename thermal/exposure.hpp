@@ -32,6 +32,8 @@ class Exposure {
   double heat_evaporated() const;  ///< so far, over all ranks [J]
   double relax(double duration, double begin, bool until_frozen);
   void explicit_steps(std::vector<CellPower> const& source, double duration, double begin, std::int64_t count);
+  void super_steps(std::vector<CellPower> const& source, double span, double begin);
+  bool super_steps_pay(double span) const;
   std::int64_t implicit_step(std::vector<CellPower> const& source, double dt, double end);
   bool at_rest(double hottest);  ///< no heat flows between the cells any more
   double check();                ///< hottest enthalpy over the ranks; throws when the state is not physical
@@ -42,6 +44,7 @@ class Exposure {
   HeatSolver solver_;
   double hottest_allowed_;  ///< [K]
   Communicator const& comm_;
+  double hottest_ = 0;  ///< enthalpy at the last check [J/m^3]
   double stable_step_;  ///< explicit [s]
   std::unique_ptr<ImplicitSolver> implicit_;
   double heat_in_ = 0, moved_ = 0, stored_ = 0, out_ = 0, error_ = 0;

@@ -191,7 +191,8 @@ TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps,
   system.awake.cold = steps == TrackSteps::all_cells ? AwakeRows::Cold::awake : AwakeRows::Cold::asleep;
   HeatSource const source = gaussian_track(content.grid, absorbed);
   PoolObserver pools(cells, content.solid, source.tracks, metal.liquidus, comm);
-  Exposure exposure(system, cells, pools, HeatSolver::automatic, 1.5 * metal.boiling_point, comm);
+  HeatSolver const solver = steps == TrackSteps::automatic ? HeatSolver::automatic : HeatSolver::explicit_steps;
+  Exposure exposure(system, cells, pools, solver, 1.5 * metal.boiling_point, comm);
   TrackBench result{.stable_step = stable_step(system.conduction, table)};
   result.seconds = seconds([&] {
     for (std::size_t i = 0; i < source.power.size(); ++i)
@@ -204,8 +205,52 @@ TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps,
   exposure.write(outcome);
   result.pool = record.pool;
   result.sweeps = outcome.explicit_steps;
-  if (getenv("RISE")) { double a=0,b=0; for (auto r: system.awake.stepped()) a+=double(r.end-r.begin); for (auto r: system.conduction.rows) b+=double(r.end-r.begin); printf("awake at end %.3f\n", a/b); }
   result.heat_error = outcome.heat_energy_relative_error;
+  return result;
+}
+
+DwellBench bench_dwell(std::int64_t cells_wanted, double dwell, double restart) {
+  double const cell = 20e-6, pulse = 1e-3;
+  CellContent content = block(cells_wanted);
+  content.grid.cell = cell;
+  Communicator const comm;
+  Material const& metal = built_in_materials().at("316L");
+  HeatCells const cells = make_heat_cells(content, SideY::far_field);
+  EnthalpyTable const table(metal, ambient, 1.5 * metal.boiling_point);
+  HeatGrid const grid(cells.grid, false, comm);
+  HeatSystem system = make_heat_system(
+      table, grid, make_conduction(cells, grid.box(), {50e-3, 50e-3}, metal.conductivity(metal.solidus), 0), {});
+  PoolObserver pools(cells, content.solid, {}, metal.liquidus, comm);
+  Exposure exposure(system, cells, pools, HeatSolver::automatic, 1.5 * metal.boiling_point, comm);
+  auto const& n = content.grid.n;
+  AbsorbedPower power;
+  for (std::int32_t j = -5; j < 5; ++j) {
+    for (std::int32_t i = -5; i < 5; ++i)
+      power.cell.push_back(content.grid.index(n[0] / 2 + i, n[1] / 2 + j, n[2] - 1));
+  }
+  power.watts.assign(power.cell.size(), 0.3);
+  exposure.heat(power, pulse, 0);
+  DwellBench result{.cells = cells.unknowns};
+  HeatOutcome before, after;
+  exposure.write(before);
+  result.seconds = seconds([&] {
+    for (double at = 0, next = restart == 0 ? dwell : 1e-3; at < dwell;
+         at = next, next = std::min(dwell, restart * next))
+      exposure.rest(next - at, pulse + at);
+  });
+  exposure.write(after);
+  result.sweeps = after.explicit_steps - before.explicit_steps;
+  result.heat_error = after.heat_energy_relative_error;
+  result.heat_kept = after.heat_stored / after.heat_in;
+  for (double const place : {0.5, 0.25, 0.0}) {
+    auto const at = [&](std::int32_t cells_along) {
+      return std::min(cells_along - 1, static_cast<std::int32_t>(place * cells_along));
+    };
+    result.rise.push_back(
+        table.temperature(
+            system.enthalpy[static_cast<std::size_t>(system.conduction.box.index(at(n[0]), at(n[1]), n[2] - 1))]) -
+        ambient);
+  }
   return result;
 }
 

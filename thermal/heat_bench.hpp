@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "core/material.hpp"
 #include "core/melt_record.hpp"
@@ -32,9 +33,25 @@ struct TrackBench {
   double heat_error = 0;  ///< relative, of the ledger
 };
 
-enum class TrackSteps { all_cells, cold_cells_asleep };
+/// Explicit steps of all cells; the same with cold cells asleep; and as HeatSolver::automatic chooses.
+enum class TrackSteps { all_cells, cold_cells_asleep, automatic };
 
 /// \param absorbed [W] \pre one process, PETSc runs
 TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps, double cell = 5e-6);
+
+/// A plate, near a cube in cells of 20 um, far field 50 mm away, that was heated by 30 W in the middle of its top for 1
+/// ms.
+struct DwellBench {
+  std::int64_t cells = 0;
+  double seconds = 0;  ///< for the dwell alone, as of a track
+  std::int64_t sweeps = 0;
+  double heat_error = 0;          ///< relative, of the ledger
+  double heat_kept = 0;           ///< share of the heat at the end
+  std::vector<double> rise = {};  ///< on the top in the middle, at the quarter and in the corner [K]
+};
+
+/// \param restart  0: the dwell in one go; else steps begin small again whenever time has grown by this factor, which
+/// makes them many times finer \pre one process, PETSc runs
+DwellBench bench_dwell(std::int64_t cells, double dwell, double restart);
 
 }  // namespace layerloop::thermal

@@ -15,6 +15,7 @@ namespace layerloop::thermal {
 struct StepScratch {
   std::vector<double> contact_flow;                                 ///< as conduction.contacts [W/m]
   std::vector<double> far_flow;                                     ///< as conduction.far [W/m]
+  std::vector<double> surface_flow;                                 ///< as sink.cells, in super steps [W]
   std::vector<std::vector<double>> theta;                           ///< of each thread: planes of cells [W/m]
   std::vector<double, HugePages<double>> start, older, start_rate;  ///< of a super step: two stages, dh/dt at its start
 };
@@ -67,9 +68,10 @@ void explicit_step(HeatSystem& system, std::span<CellPower const> source, double
 int super_step_stages(double dt, double stable);
 
 /// About stages^2 / 4 explicit steps at once, at second order in time: the Runge-Kutta-Legendre scheme RKL2 of Meyer,
-/// Balsara & Aslam, J. Comput. Phys. 257 (2014) 594, for conduction and source; the sinks, implicitly, after them.
-/// Every stage is made of flows, so heat balances to round-off. Peaks and melting are seen at the end of the step only.
-/// \pre stages >= super_step_stages(dt, stable_step) \note Collective
+/// Balsara & Aslam, J. Comput. Phys. 257 (2014) 594, for conduction, source and surface losses. Every stage is made of
+/// flows, so heat balances to round-off. Peaks and melting are seen at the end of the step only; evaporation is left
+/// out. The same bits for any number of ranks and threads. \pre stages >= super_step_stages(dt, stable_step), no metal
+/// that evaporates \note Collective
 void super_step(HeatSystem& system, std::span<CellPower const> source, double dt, int stages);
 
 /// The same powers, ascending by cell, as sweeps want them.

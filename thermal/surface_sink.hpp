@@ -24,6 +24,7 @@ struct SurfaceSink {
   std::optional<SurfaceLosses> losses;
   double evaporation_onset = 0;  ///< h below which evaporation is left out: that of the solidus [J/m^3]
   std::vector<OpenCell> cells;   ///< empty when both effects are off
+  double lost = 0;               ///< by radiation and convection in super steps, beside that of the cells [J] so far
 
   struct Flux {
     double evaporation = 0, losses = 0, slope = 0;  ///< [W/m^2], [W/m^2], d(sum)/dT [W/(m^2 K)]
