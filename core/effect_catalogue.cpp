@@ -105,6 +105,12 @@ std::vector<Effect> light_effects() {
 
 std::vector<Effect> heat_effects() {
   return {
+      {"marangoni", heat, physics, "false", 1, 0.5,
+       "Flow of the melt, driven by surface tension, as a conductivity of the liquid that is larger along x and y; the "
+       "strength scales what is added.",
+       "Lampa et al., Int. J. Heat Mass Transf. 40 (1997) 1239", "thermal/effects/marangoni.hpp",
+       {{"lateral_factor", D::none, {1, 10}, "3", 1, "Conductivity of the liquid along x and y over that of its table.", 1.0},
+        {"vertical_factor", D::none, {1, 10}, "1", 1, "The same along z.", 1.0}}},
       {"latent_heat", heat, physics, "true", 2, 0.1,
        "Latent heat of fusion between solidus and liquidus.",
        "Voller & Cross, Int. J. Heat Mass Transf. 24 (1981) 545", "thermal/effects/latent_heat.hpp"},

@@ -11,6 +11,7 @@
 #include "core/progress.hpp"
 #include "thermal/effects/keyhole.hpp"
 #include "thermal/effects/latent_heat.hpp"
+#include "thermal/effects/marangoni.hpp"
 #include "thermal/effects/powder_conductivity.hpp"
 #include "thermal/effects/variable_conductivity.hpp"
 #include "thermal/exposure.hpp"
@@ -135,11 +136,15 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   PoolObserver pools(cells, content, source.tracks, {isotherm, metal.boiling_point}, comm);
 
   HeatGrid const grid(content.grid, side_y == SideY::periodic, comm);
-  HeatSystem system =
-      make_heat_system(table, grid,
-                       make_conduction(cells, grid.box(), {settings.margin, settings.substrate_depth},
-                                       metal.conductivity(metal.solidus), contact_law(cells, settings, metal, effects)),
-                       make_sink(cells, grid, table, metal, settings.ambient_temperature, effects));
+  Conduction conduction =
+      make_conduction(cells, grid.box(), {settings.margin, settings.substrate_depth}, metal.conductivity(metal.solidus),
+                      contact_law(cells, settings, metal, effects));
+  if (double const strength = effect_strength(effects, "marangoni"); strength != 0) {
+    conduction.liquid = marangoni(table, strength, effect_parameter(effects, "marangoni", "lateral_factor"),
+                                  effect_parameter(effects, "marangoni", "vertical_factor"));
+  }
+  HeatSystem system = make_heat_system(table, grid, std::move(conduction),
+                                       make_sink(cells, grid, table, metal, settings.ambient_temperature, effects));
   Exposure exposure(system, cells, pools, settings.solver, hottest, comm);
   Progress progress("heat", source.time.back() - source.time.front(), report == Report::progress && comm.is_root());
   MeltState state{.melted = [&] { return melted_cells(system, cells, comm); }, .keyhole = {}};

@@ -190,7 +190,7 @@ TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps,
       table, grid, make_conduction(cells, grid.box(), {far, far}, metal.conductivity(metal.solidus), 0), {});
   system.awake.cold = steps == TrackSteps::all_cells ? AwakeRows::Cold::awake : AwakeRows::Cold::asleep;
   HeatSource const source = gaussian_track(content.grid, absorbed);
-  PoolObserver pools(cells, content.solid, source.tracks, metal.liquidus, comm);
+  PoolObserver pools(cells, content, source.tracks, {metal.liquidus, metal.boiling_point}, comm);
   HeatSolver const solver = steps == TrackSteps::automatic ? HeatSolver::automatic : HeatSolver::explicit_steps;
   Exposure exposure(system, cells, pools, solver, 1.5 * metal.boiling_point, comm);
   TrackBench result{.stable_step = stable_step(system.conduction, table)};
@@ -220,7 +220,8 @@ DwellBench bench_dwell(std::int64_t cells_wanted, double dwell, double restart) 
   HeatGrid const grid(cells.grid, false, comm);
   HeatSystem system = make_heat_system(
       table, grid, make_conduction(cells, grid.box(), {50e-3, 50e-3}, metal.conductivity(metal.solidus), 0), {});
-  PoolObserver pools(cells, content.solid, {}, metal.liquidus, comm);
+  std::vector<Track> const no_tracks;
+  PoolObserver pools(cells, content, no_tracks, {metal.liquidus, metal.boiling_point}, comm);
   Exposure exposure(system, cells, pools, HeatSolver::automatic, 1.5 * metal.boiling_point, comm);
   auto const& n = content.grid.n;
   AbsorbedPower power;

@@ -118,16 +118,22 @@ void ImplicitSolver::jacobian(Vec enthalpy, Mat matrix) {
     check_petsc(MatSetValuesLocal(matrix, 1, &r, 1, &c, &value, ADD_VALUES));
   };
   std::int64_t const sy = conduction.box.stride_y(), sz = conduction.box.stride_z();
+  auto const slope = [&](std::int64_t c, bool vertical) {  // of the flows along a direction
+    bool const liquid = conduction.liquid.acts() && integral_[c] > conduction.liquid.liquidus;
+    double const factor = vertical ? conduction.liquid.vertical : conduction.liquid.lateral;
+    return table.integral_slope(trial_[c]) * (liquid ? factor : 1);
+  };
   for_own_cells(conduction.box, [&](std::int64_t c, std::int64_t) {
     if (conduction.per_capacity[c] == 0) return;
-    double const factor = dt_ * conduction.per_capacity[c], own_slope = table.integral_slope(trial_[c]);
+    double const factor = dt_ * conduction.per_capacity[c];
     std::pair<std::int64_t, float> const faces[] = {
         {c - 1, conduction.share_x[c - 1]}, {c + 1, conduction.share_x[c]},       {c - sy, conduction.share_y[c - sy]},
         {c + sy, conduction.share_y[c]},    {c - sz, conduction.share_z[c - sz]}, {c + sz, conduction.share_z[c]}};
     for (auto const& [next, share] : faces) {
       if (share == 0) continue;
-      diagonal[c] += factor * share * own_slope;
-      add(c, next, -factor * share * table.integral_slope(trial_[next]));
+      bool const vertical = std::abs(next - c) == sz;
+      diagonal[c] += factor * share * slope(c, vertical);
+      add(c, next, -factor * share * slope(next, vertical));
     }
   });
   for (ContactFace const& face : conduction.contacts) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <numbers>
+
 #include "heated_block.hpp"
 #include "thermal/bulk_flow.hpp"
 #include "thermal/heat_bench.hpp"
@@ -125,6 +127,29 @@ TEST(ExplicitStep, ThreadsLeaveTheSameBits) {
     EXPECT_EQ(shared.heat_stored, alone.heat_stored);
     EXPECT_EQ(shared.heat_out, alone.heat_out);
   }
+}
+
+/// A bar with a cosine along x of constant properties: the mode decays as exp(-t rate) with the rate of seven cells.
+TEST(SuperStep, IsOfSecondOrderAndKeepsTheHeat) {
+  std::int32_t const n = 16;
+  double const cell = 5e-6, a = 24 / (7300.0 * 789), p = std::numbers::pi / n;
+  double const rate = a / (cell * cell) * 2 * (1 - std::cos(p)), duration = 1 / rate;
+  auto const error = [&](int steps) {
+    HeatedBlock bar(solid_block(cell, {n, 1, 1}), constant_metal(24, 7300, 789));
+    auto const exact = [&](std::int32_t i, double t) {
+      return 600 + 200 * std::cos(p * (i + 0.5)) * std::exp(-rate * t);
+    };
+    for (std::int32_t i = 0; i < n; ++i) bar.enthalpy(i, 0, 0) = bar.table.enthalpy(exact(i, 0));
+    double const dt = duration / steps, before = stored_heat(bar.system);
+    int const stages = super_step_stages(dt, stable_step(bar.system.conduction, bar.table));
+    for (int s = 0; s < steps; ++s) super_step(bar.system, {}, dt, stages);
+    EXPECT_NEAR(stored_heat(bar.system) / before, 1, 1e-13);
+    return std::abs(bar.temperature(0, 0, 0) - exact(0, duration));
+  };
+  double const coarse = error(4), fine = error(8);
+  std::printf("super steps: %.3g K, then %.3g K\n", coarse, fine);
+  EXPECT_LT(coarse, 1);
+  EXPECT_GT(std::log2(coarse / fine), 1.8);
 }
 
 TEST(HeatBench, CountsWhatItDoes) {
