@@ -40,10 +40,10 @@ using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now
 /// Heats the cells with the source, starting from ambient, until the source has ended and nothing is above the solidus.
 ///
 /// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `latent_heat`, `variable_conductivity`,
-/// `evaporation`, `surface_losses` and `keyhole` as switched on. Far field: at ambient, heat.substrate_depth below the bottom and
-/// heat.margin beyond the sides (the distance of the heated patch, which is exact for a steady point source on a half
-/// space). HeatSolver::automatic steps explicitly while the beam is on and shortly after, then implicitly with growing
-/// steps.
+/// `evaporation`, `surface_losses` and `keyhole` as switched on. Far field: at ambient, heat.substrate_depth below the
+/// bottom and heat.margin beyond the sides (the distance of the heated patch, which is exact for a steady point source
+/// on a half space). HeatSolver::automatic steps explicitly while the beam is on and shortly after, then implicitly
+/// with growing steps.
 ///
 /// \throws InputError    arrays and times that do not fit (before any computing)
 /// \throws PhysicsError  NaN; metal above 1.5 boiling points, or with evaporation 2000 K above it; heat that does not

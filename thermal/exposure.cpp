@@ -24,7 +24,7 @@ constexpr double super_gain = 3;
 constexpr int super_steps_of_stretch = 2;
 /// Enthalpy, as a share of the largest, up to which metal may sleep with the beam off.
 constexpr double asleep_at_rest = 1e-4;
-constexpr std::int64_t steps_between_checks = 50;
+constexpr std::int64_t steps_between_checks = 100;
 /// Pools freeze within a millisecond; what is molten after this time has lost touch with the plate, and waits as it is.
 constexpr double longest_freezing = 2e-3;
 

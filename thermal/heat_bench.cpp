@@ -196,8 +196,10 @@ TrackBench bench_track(Material const& metal, double absorbed, TrackSteps steps,
   TrackBench result{.stable_step = stable_step(system.conduction, table)};
   result.seconds = seconds([&] {
     for (std::size_t i = 0; i < source.power.size(); ++i)
-      exposure.heat(source.power[i], source.time[i + 1] - source.time[i], source.time[i]);
+      exposure.heat(source.power[i], source.time[i + 1] - source.time[i], source.time[i]),
+          exposure.check_now_and_then();
   });
+  exposure.rest(0, track_time);  // checks
   pools.finish(system);
   MeltRecord record;
   pools.write(record);

@@ -21,7 +21,7 @@ HeatSystem make_heat_system(EnthalpyTable const& table, HeatGrid const& grid, Co
           std::vector<float>(n, 0),
           std::vector<char>(n, 0),
           0,
-          table.enthalpy(table.temperature(0) + AwakeRows::rise),
+          AwakeRows::share_of_solidus * table.solidus(),
           {},
           {}};
 }
