@@ -180,7 +180,8 @@ std::vector<CaseKey> heat_and_run_rows() {
        "Temperature of plate, powder and gas before each exposure."},
       {"heat", "solver", choice<heat, &H::solver>({"explicit", "implicit", "automatic"}),
        D::none, {}, Need::never, "\"automatic\"",
-       "Time stepping; `automatic`: explicit while the beam is on, implicit while it is off."},
+       "Time stepping; `automatic`: explicit, and many steps at once (Runge-Kutta-Legendre) where metal conducts fast or "
+       "the beam is off."},
       {"heat", "powder_contact_conductivity", at<heat, &H::powder_contact_conductivity>,
        D::conductivity, {0, 100}, Need::never, "0.2",
        "Conductivity across faces between cells of different grains: gas and point contacts; see the effect powder_conductivity."},

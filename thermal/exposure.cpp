@@ -20,13 +20,24 @@ constexpr double growth = 0.3;
 constexpr std::int64_t many_iterations = 12;
 /// Automatic choice: super steps where one replaces this many explicit ones for each of its stages.
 constexpr double super_gain = 3;
-/// Super steps in a stretch of constant powers with the beam on, in which it moves by two cells.
-constexpr int super_steps_of_stretch = 2;
+/// The beam moves by at most this share of its width in a super step.
+constexpr double super_travel = 1.0 / 6;
+/// A stretch of constant powers with the beam on is this long a travel, in cells.
+constexpr double stretch_travel = 2;
 /// Enthalpy, as a share of the largest, up to which metal may sleep with the beam off.
 constexpr double asleep_at_rest = 1e-4;
 constexpr std::int64_t steps_between_checks = 100;
 /// Pools freeze within a millisecond; what is molten after this time has lost touch with the plate, and waits as it is.
 constexpr double longest_freezing = 2e-3;
+
+/// Super steps that a stretch of constant powers is divided into. The beam's width is the edge of the square that the
+/// power would cover evenly: 0.89 D4sigma of a Gaussian.
+int super_steps_of_stretch(std::vector<double> const& watts) {
+  double sum = 0, squares = 0;
+  for (double const w : watts) sum += w, squares += w * w;
+  double const width = sum > 0 ? sum / std::sqrt(squares) : 1;  // in cells
+  return std::max(1, static_cast<int>(std::ceil(stretch_travel / (super_travel * width))));
+}
 
 }  // namespace
 
@@ -53,12 +64,13 @@ void Exposure::heat(AbsorbedPower const& power, double duration, double begin) {
   heat_in_ += watts.value() * duration;
   moved_ += moved.value() * duration;
   bool const implicit = solver_ == HeatSolver::implicit_steps;
-  if (double const span = duration / super_steps_of_stretch; implicit) {
+  int const parts = super_steps_of_stretch(power.watts);
+  if (double const span = duration / parts; implicit) {
     auto const count = static_cast<std::int64_t>(std::ceil(duration / (implicit_stride * stable_step_)));
     double const dt = duration / static_cast<double>(count);
     for (std::int64_t i = 0; i < count; ++i) implicit_step(source, dt, begin + static_cast<double>(i + 1) * dt);
-  } else if (super_steps_pay(span)) {
-    for (int i = 0; i < super_steps_of_stretch; ++i) super_steps(source, span, begin + i * span);
+  } else if (!system_.sink.evaporation && super_steps_pay(span)) {
+    for (int i = 0; i < parts; ++i) super_steps(source, span, begin + i * span);
   } else {
     explicit_steps(source, duration, begin, static_cast<std::int64_t>(std::ceil(duration / stable_step_)));
   }
@@ -103,9 +115,7 @@ double Exposure::relax(double duration, double begin, bool until_frozen) {
 }
 
 bool Exposure::super_steps_pay(double span) const {
-  bool const evaporates = system_.sink.evaporation && hottest_ > system_.sink.evaporation_onset;
-  return solver_ == HeatSolver::automatic && !evaporates &&
-         span > super_gain * stable_step_ * super_step_stages(span, stable_step_);
+  return solver_ == HeatSolver::automatic && span > super_gain * stable_step_ * super_step_stages(span, stable_step_);
 }
 
 void Exposure::super_steps(std::vector<CellPower> const& source, double span, double begin) {
@@ -148,7 +158,7 @@ double Exposure::check() {
   if (!std::isfinite(stored_)) {
     throw PhysicsError("the temperature field is not finite (NaN) check the material's tables and the absorbed power");
   }
-  double const hottest = hottest_ = comm_.max(thermal::hottest(system_)), T = system_.table.temperature(hottest);
+  double const hottest = comm_.max(thermal::hottest(system_)), T = system_.table.temperature(hottest);
   if (T > hottest_allowed_) {
     throw PhysicsError(
         fmt::format("the metal reaches {:.0f} K (the model ends at {:.0f} K: real metal would have boiled away) "

@@ -44,7 +44,6 @@ class Exposure {
   HeatSolver solver_;
   double hottest_allowed_;  ///< [K]
   Communicator const& comm_;
-  double hottest_ = 0;  ///< enthalpy at the last check [J/m^3]
   double stable_step_;  ///< explicit [s]
   std::unique_ptr<ImplicitSolver> implicit_;
   double heat_in_ = 0, moved_ = 0, stored_ = 0, out_ = 0, error_ = 0;
