@@ -100,7 +100,10 @@ void update(Keyhole& keyhole, HeatSystem& system, HeatCells const& cells, Commun
     float& peak = system.peak[static_cast<std::size_t>(own)];
     peak = std::min(peak, static_cast<float>(system.table.enthalpy(keyhole.wall_temperature())));
   }
-  if (!keyhole.changed().empty()) system.grid.exchange(system.enthalpy);
+  if (!keyhole.changed().empty()) {
+    system.grid.exchange(system.enthalpy);
+    system.awake.forget();
+  }
   state.keyhole = keyhole.wall();
   state.keyhole_radius = keyhole.radius();
   state.keyhole_depth = keyhole.depth();
