@@ -131,8 +131,8 @@ TEST(LightEffects, DriftingSpotHasTheWidthOfTheShiftedFocus) {
     double const rayleigh = std::numbers::pi * waist * waist / (1.2 * 1070e-9);
     for (std::int32_t const layer : {1, 41, 201}) {
       Exposure const exposure = plate.expose(0, layer);
-      for (std::size_t i = 0; i < 3; ++i) {
-        double const shift = std::min(5e-3, (layer - 1) * on_time + static_cast<double>(i) * 20e-6);
+      for (std::size_t i = 0; i < exposure.stops.size(); ++i) {
+        double const shift = std::min(5e-3, (layer - 1) * on_time + exposure.stops[i].begin_time);
         double const w = waist * std::sqrt(1 + std::pow(shift / rayleigh, 2));
         EXPECT_NEAR(plate.second_moment(exposure.source.power[i]) / (0.25 * w * w), 1, tolerance) << layer << " " << i;
       }

@@ -48,63 +48,67 @@ CellContent between_plates(PowderBed const& bed, double height, double cell) {
   return content;
 }
 
-struct Measured {
-  double porosity, conductivity;
-};
+using Matrix = Eigen::SparseMatrix<double>;
 
-/// Steady heat from the lid to the plate: flux over the gradient of the mean temperature in the middle half of the bed.
-Measured measure(CellContent const& content, double metal, thermal::ContactLaw const& contacts) {
-  using namespace thermal;
-  double const infinite = std::numeric_limits<double>::infinity(), cell = content.grid.cell;
-  HeatCells const cells = make_heat_cells(content, SideY::adiabatic);
-  HeatGrid const grid(cells.grid, false, Communicator());
-  Conduction const conduction = make_conduction(cells, grid.box(), {infinite, infinite}, metal, contacts);
-  LocalBox const& box = conduction.box;
-  std::int32_t const planes = cells.grid.n[2];
-
+/// Conductances between all cells [W/K], as the heat solver has them.
+Matrix conductances(thermal::Conduction const& conduction, double metal) {
+  thermal::LocalBox const& box = conduction.box;
   std::vector<Eigen::Triplet<double>> entries;
-  std::vector<double> diagonal(static_cast<std::size_t>(box.size()), 0);
-  auto const join = [&](std::int64_t a, std::int64_t b, double conductance) {
-    diagonal[static_cast<std::size_t>(a)] += conductance, diagonal[static_cast<std::size_t>(b)] += conductance;
-    entries.emplace_back(a, b, -conductance), entries.emplace_back(b, a, -conductance);
+  auto const join = [&](std::int64_t a, std::int64_t b, double conductivity) {
+    double const g = conductivity * conduction.cell;
+    for (auto const& [row, column] : {std::pair{a, b}, std::pair{b, a}})
+      entries.emplace_back(row, column, -g), entries.emplace_back(row, row, g);
   };
   std::int64_t const strides[] = {1, box.stride_y(), box.stride_z()};
   std::vector<float> const* const shares[] = {&conduction.share_x, &conduction.share_y, &conduction.share_z};
   for (std::int64_t c = 0; c + box.stride_z() < box.size(); ++c)
     for (int axis = 0; axis < 3; ++axis)
       if (float const share = (*shares[axis])[static_cast<std::size_t>(c)]; share > 0)
-        join(c, c + strides[axis], metal * share * cell);
-  for (ContactFace const& face : conduction.contacts)
-    if (face.cell < face.neighbour) join(face.cell, face.neighbour, face.conductivity * cell);
-
-  Eigen::VectorXd heat = Eigen::VectorXd::Zero(box.size());
-  double const held = 1e3 * metal * cell;  // to 0 at the bottom plane, to 1 K at the top one
-  for (std::int32_t j = 0; j < cells.grid.n[1]; ++j)
-    for (std::int32_t i = 0; i < cells.grid.n[0]; ++i)
-      for (std::int32_t const k : {0, planes - 1}) {
-        diagonal[static_cast<std::size_t>(box.index(i, j, k))] += held;
-        if (k > 0) heat[box.index(i, j, k)] = held;
-      }
-  for (std::int64_t c = 0; c < box.size(); ++c)
-    entries.emplace_back(c, c, std::max(diagonal[static_cast<std::size_t>(c)], 1e-9 * metal * cell));
-  Eigen::SparseMatrix<double> matrix(box.size(), box.size());
+        join(c, c + strides[axis], metal * share);
+  for (thermal::ContactFace const& face : conduction.contacts)
+    if (face.cell < face.neighbour) join(face.cell, face.neighbour, face.conductivity);
+  for (std::int64_t c = 0; c < box.size(); ++c) entries.emplace_back(c, c, 1e-12 * metal * conduction.cell);
+  Matrix matrix(box.size(), box.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(matrix);
+  return matrix;
+}
+
+struct Measured {
+  double porosity, conductivity;
+};
+
+/// Steady heat from the lid, at 1 K, to the plate, at 0: flux over the gradient of the mean temperature in the middle
+/// half of the bed.
+Measured measure(CellContent const& content, double metal, thermal::ContactLaw const& contacts) {
+  using namespace thermal;
+  double const infinite = std::numeric_limits<double>::infinity(), cell = content.grid.cell;
+  HeatCells const cells = make_heat_cells(content, SideY::adiabatic);
+  HeatGrid const grid(cells.grid, false, Communicator());
+  Conduction const conduction = make_conduction(cells, grid.box(), {infinite, infinite}, metal, contacts);
+  auto const [nx, ny, planes] = cells.grid.n;
+  auto const in_plane = [&](std::int32_t k, auto const& visit) {
+    for (std::int32_t j = 0; j < ny; ++j)
+      for (std::int32_t i = 0; i < nx; ++i) visit(conduction.box.index(i, j, k));
+  };
+  Matrix matrix = conductances(conduction, metal);
+  Eigen::VectorXd heat = Eigen::VectorXd::Zero(matrix.rows());
+  double const held = 1e3 * metal * cell;
+  in_plane(0, [&](std::int64_t c) { matrix.coeffRef(c, c) += held; });
+  in_plane(planes - 1, [&](std::int64_t c) { matrix.coeffRef(c, c) += held, heat[c] = held; });
+  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> solver(matrix);
   solver.setTolerance(1e-9);
   Eigen::VectorXd const temperature = solver.solve(heat);
 
   double flow = 0, filled = 0, n = 0, sz = 0, st = 0, szz = 0, szt = 0;
-  for (std::int32_t k = 0; k < planes; ++k) {
-    double weight = 0, mean = 0;
-    for (std::int32_t j = 0; j < cells.grid.n[1]; ++j)
-      for (std::int32_t i = 0; i < cells.grid.n[0]; ++i) {
-        double const fill = conduction.fill[static_cast<std::size_t>(box.index(i, j, k))];
-        if (k == 0) flow += held * temperature[box.index(i, j, k)];
-        weight += fill, mean += fill * temperature[box.index(i, j, k)];
-      }
-    if (k < planes / 4 || k >= planes - planes / 4) continue;
-    double const z = k * cell, t = mean / weight;
-    filled += weight / (cells.grid.n[0] * cells.grid.n[1]);
+  in_plane(0, [&](std::int64_t c) { flow += held * temperature[c]; });
+  for (std::int32_t k = planes / 4; k < planes - planes / 4; ++k) {
+    double fill = 0, mean = 0;
+    in_plane(k, [&](std::int64_t c) {
+      double const f = conduction.fill[static_cast<std::size_t>(c)];
+      fill += f, mean += f * temperature[c];
+    });
+    double const z = k * cell, t = mean / fill;
+    filled += fill / (nx * ny);
     n += 1, sz += z, st += t, szz += z * z, szt += z * t;
   }
   double const gradient = (n * szt - sz * st) / (n * szz - sz * sz);
