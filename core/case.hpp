@@ -33,7 +33,7 @@ enum class PolarisationModel { averaged, tracked };
 enum class AbsorbingBed { spread, settled, file };
 /// What the verb `melt` melts; `automatic` is settled when the case is read.
 enum class MeltedBed { automatic, plate, spread, file };
-enum class ScanKind { track, hatch };
+enum class ScanKind { track, hatch, file };
 /// What becomes of a spread layer, or that there is none; the verb decides.
 enum class Process { melting, spreading, calibrating, absorbing, exposing };
 enum class Gas { argon, nitrogen, helium };
@@ -164,8 +164,14 @@ struct ScanSettings {
   double track_length = 0;
   std::int64_t tracks = 0;
   double hatch_spacing = 0;
-  double rotation = 0;  ///< of the hatch from layer to layer [rad]; 0 or multiples of pi
-  double dwell = 0;     ///< laser off between tracks [s]
+  double rotation = 0;                   ///< of the tracks from layer to layer [rad]
+  double dwell = 0;                      ///< laser off between tracks [s]
+  double direction = 0;                  ///< of the tracks of layer 1, from x towards y [rad]
+  std::string path = "";                 ///< file of the beam's way
+  std::vector<double> track_index = {};  ///< numbers of the tracks in the order they are scanned; empty: ascending
+
+  /// Of the tracks of a layer, from x towards y [rad].
+  double angle(std::int64_t layer) const { return direction + rotation * static_cast<double>(layer - 1); }
 };
 
 struct HeatSettings {

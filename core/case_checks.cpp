@@ -303,11 +303,8 @@ class CaseChecks {
 
   void scan() const {
     ScanSettings const& scan = c_.scan;
-    double const half_turns = scan.rotation / pi;
-    if (known({"scan.rotation"}) && std::abs(half_turns - std::round(half_turns)) > 1e-9) {
-      report("scan.rotation", "= {} (must be a multiple of 180 deg: tracks run along the recoating direction)",
-             format_quantity(scan.rotation, Dimension::angle));
-    }
+    if (known({"scan.kind", "scan.path"}) && (scan.kind == ScanKind::file) == scan.path.empty())
+      report("scan.path", "= \"{}\" (a file is needed for scan.kind = \"file\", and only then)", scan.path);
     if (!known({"scan.kind", "scan.tracks", "scan.hatch_spacing"})) return;
     if (scan.kind == ScanKind::track && scan.tracks != 1) {
       report("scan.tracks", "= {} (scan.kind \"track\" is one track) set scan.kind = \"hatch\"", scan.tracks);
@@ -315,6 +312,13 @@ class CaseChecks {
     if (scan.kind == ScanKind::hatch && scan.tracks > 1 && scan.hatch_spacing == 0) {
       report("scan.hatch_spacing", "= 0 (must be above 0 with {} tracks)", scan.tracks);
     }
+    if (!known({"scan.track_index"}) || scan.track_index.empty()) return;
+    std::vector<double> sorted = scan.track_index, numbers(static_cast<std::size_t>(scan.tracks));
+    std::ranges::sort(sorted);
+    std::iota(numbers.begin(), numbers.end(), 1.0);
+    if (sorted != numbers)
+      report("scan.track_index", "= [{}] (must hold every number from 1 to scan.tracks = {} once)",
+             fmt::join(scan.track_index, ", "), scan.tracks);
   }
 
   /// What the verb melt heats, unless it is the deposition zone of a machine.
@@ -330,12 +334,9 @@ class CaseChecks {
     if (!known({"heat.size"}) || c_.heat.size.empty()) return;
     if (c_.heat.size.size() != 3)
       report("heat.size", "has {} values (three are needed: [x, y, z])", c_.heat.size.size());
-    else if (known({"scan.track_length"}) && c_.scan.track_length + 2 * radius > c_.heat.size[0])
-      report("heat.size", "= [{}, ...] (beam off the plate: track and spot need {} along x) lengthen it",
-             length(c_.heat.size[0]), length(c_.scan.track_length + 2 * radius));
   }
 
-  /// The patch is centred on the deposition zone; tracks run along x, y is periodic.
+  /// The patch is centred on the deposition zone.
   void beam() const {
     ScanSettings const& scan = c_.scan;
     if (!known({"laser.spot_diameter", "laser.spot_definition"})) return;
@@ -344,27 +345,39 @@ class CaseChecks {
       report("heat.cell_size", "= {} (must resolve the beam: at most its 1/e2 radius, {})", length(c_.heat.cell_size),
              length(0.5 * spot));
     }
-    if (known({"scan.track_length", "machine.deposition_length"})) {
-      double const excess = scan.track_length + spot - c_.machine.deposition_length;
-      if (excess > 1e-12) {
-        report("scan.track_length",
-               "= {} (beam off the bed: track and spot need {}, the deposition zone has {}) "
-               "shorten the track by {}",
-               length(scan.track_length), length(scan.track_length + spot), length(c_.machine.deposition_length),
-               length(excess));
-      }
+    if (scan.kind == ScanKind::file ||
+        !known({"scan.track_length", "scan.tracks", "scan.hatch_spacing", "scan.rotation", "scan.direction"}))
+      return;
+    std::int64_t const turns = scan.rotation == 0 ? 1 : std::min<std::int64_t>(c_.run.layers, 360);
+    for (std::int64_t layer = 1; layer <= turns; ++layer) {
+      if (!beam_stays_on(layer, spot)) return;
     }
-    if (known({"scan.tracks", "scan.hatch_spacing", "machine.width"})) {
-      double const needed = static_cast<double>(scan.tracks - 1) * scan.hatch_spacing + spot;
-      double const excess = needed - c_.machine.width;
-      if (excess > 1e-12) {
-        bool const hatch = scan.tracks > 1;
-        report(hatch ? "scan.hatch_spacing" : "laser.spot_diameter",
-               "= {} (beam off the bed: {} tracks and the spot need {}, machine.width is {}) narrow them by {}",
-               length(hatch ? scan.hatch_spacing : c_.laser.spot_diameter), scan.tracks, length(needed),
-               length(c_.machine.width), length(excess));
-      }
+  }
+
+  /// Whether the hatch of a layer and the spot lie in the deposition zone; reports by how much they do not.
+  bool beam_stays_on(std::int64_t layer, double spot) const {
+    ScanSettings const& scan = c_.scan;
+    double const along = scan.track_length, across = static_cast<double>(scan.tracks - 1) * scan.hatch_spacing,
+                 c = std::abs(std::cos(scan.angle(layer))), s = std::abs(std::sin(scan.angle(layer)));
+    double const x = along * c + across * s + spot, y = along * s + across * c + spot;
+    std::string const turned =
+        s > 1e-9 ? fmt::format(" at {} in layer {}", format_quantity(scan.angle(layer), Dimension::angle), layer) : "";
+    double const excess_x = x - c_.machine.deposition_length, excess_y = y - c_.machine.width;
+    if (known({"machine.deposition_length"}) && excess_x > 1e-12) {
+      report("scan.track_length",
+             "= {} (beam off the bed: track and spot need {}{}, the deposition zone has {}) shorten the track by {}",
+             length(scan.track_length), length(x), turned, length(c_.machine.deposition_length), length(excess_x));
+      return false;
     }
+    if (known({"machine.width"}) && excess_y > 1e-12) {
+      bool const hatch = scan.tracks > 1;
+      report(hatch ? "scan.hatch_spacing" : "laser.spot_diameter",
+             "= {} (beam off the bed: {} tracks and the spot need {}{}, machine.width is {}) narrow them by {}",
+             length(hatch ? scan.hatch_spacing : c_.laser.spot_diameter), scan.tracks, length(y), turned,
+             length(c_.machine.width), length(excess_y));
+      return false;
+    }
+    return true;
   }
 
   /// The lattice that holds the part and the heat grid: periodic in y, from end to end of the deposition zone in x.

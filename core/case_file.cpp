@@ -420,8 +420,8 @@ Case case_of_text(std::string const& text, std::filesystem::path const& path, st
   Case result = reader.read(process);
   if (!reader.faults().empty()) throw_faults(reader.faults(), path.string());
   if (result.heat.cell_size == 0 && result.has_machine()) result.heat.cell_size = common_cell(result.machine, path);
-  for (std::string* file :
-       {&result.machine.substrate, &result.powder.bed, &result.laser.profile_file}) {  // seen from the case
+  for (std::string* file : {&result.machine.substrate, &result.powder.bed, &result.laser.profile_file,
+                            &result.scan.path}) {  // seen from the case
     if (!file->empty()) *file = (std::filesystem::absolute(path).parent_path() / *file).lexically_normal().string();
   }
   return result;

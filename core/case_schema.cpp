@@ -356,6 +356,8 @@ bool is_needed(CaseKey const& row, Case const& c) {
   bool const bed_is_there = (c.process == Process::absorbing && c.absorb.bed == AbsorbingBed::file) ||
                             (c.process == Process::exposing && !c.has_machine());
   if (bed_is_there && (row.table == "contact" || (row.table == "powder" && row.key != "material"))) return false;
+  bool const of_way = row.table == "scan" && (row.key == "scan_speed" || row.key == "track_length");
+  if (of_way && c.scan.kind == ScanKind::file) return false;
   switch (row.need) {
     case Need::always:
       return true;

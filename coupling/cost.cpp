@@ -22,7 +22,6 @@ std::int64_t dose_count(Case const& checked) {
 
 Cost estimate_cost(Case const& checked) {
   MachineSettings const& machine = checked.machine;
-  ScanSettings const& scan = checked.scan;
   Cost cost;
   cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose_count(checked);
   double const sweep = dem::blade_stroke(machine) / machine.recoating_speed;
@@ -30,10 +29,11 @@ Cost estimate_cost(Case const& checked) {
   cost.memory = memory_per_grain * static_cast<double>(cost.particles);
   if (!checked.has_laser()) return cost;
 
-  auto const tracks = static_cast<std::int64_t>(scan_path(checked, 1).size());
-  cost.rays = checked.run.layers * tracks * std::llround(scan.track_length / checked.optics.position_spacing) *
-              checked.optics.rays;
-  double const length = std::min(scan.track_length + 2 * checked.heat.margin, machine.deposition_length);
+  for (Track const& track : scan_path(checked, 1))
+    cost.rays += checked.run.layers * checked.optics.rays *
+                 std::llround((track.end - track.begin).norm() / checked.optics.position_spacing);
+  auto const [from, to] = heated_range(checked, 1);
+  double const length = std::min(to - from, machine.deposition_length);
   double const height =
       checked.heat.substrate_depth + static_cast<double>(checked.run.layers) * machine.layer_thickness;
   cost.cells = std::llround(length * machine.width * height / std::pow(checked.heat.cell_size, 3));

@@ -166,7 +166,7 @@ void consolidate(Run const& run, BuildState& build, LayerRecord& layer) {
     Stopwatch const timed(build.record.wall_time.mesh);
     layer.consolidation = freeze_zone(build.solid, build.bed, build.substrate, checked);
   } else {
-    auto const [from, to] = heated_range(checked);
+    auto const [from, to] = heated_range(checked, layer.layer);
     CellContent const cells = cell_content(build.solid, build.bed, checked, from, to);
     MeltRecord const melt = expose(run, build, layer, cells);
     Stopwatch const timed(build.record.wall_time.mesh);

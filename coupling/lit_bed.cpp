@@ -7,10 +7,8 @@
 #include <numbers>
 
 #include "core/bed_file.hpp"
-#include "core/case_file.hpp"
 #include "core/error.hpp"
-#include "coupling/checkpoint.hpp"
-#include "coupling/layer_loop.hpp"
+#include "coupling/melt_bed.hpp"
 #include "coupling/optics_of_case.hpp"
 #include "dem/settled_plate.hpp"
 
@@ -110,32 +108,20 @@ LitBed bed_that_settles(Case const& checked, Communicator const& comm, bool show
 
 LitBed bed_that_is_spread(Case const& checked, std::filesystem::path const& folder, Communicator const& comm,
                           bool quiet) {
-  Case spreading = checked;
-  spreading.process = Process::spreading;
-  spreading.run.replicates = 1;
-  spreading.run.checkpoint = true;
-  RunOptions options;
-  options.folder = folder;
-  options.resume = true;
-  options.quiet = quiet;
-  run_layer_loop(spreading, options, comm);
-  std::string skipped;
-  std::optional<BuildState> const build = load_newest_checkpoint(folder, resolved_toml(spreading), skipped);
-  if (!build) throw FileError(fmt::format("the bed that was spread in {} cannot be read again", folder.string()));
-
+  BuildState const build = spread_bed(checked, folder, comm, quiet);
   MachineSettings const& machine = checked.machine;
   LitBed lit;
-  lit.bed = build->bed;
+  lit.bed = build.bed;
   double const rim = 2 * largest_radius(lit.bed), from = machine.deposition_begin(), to = machine.deposition_end();
   std::vector<char> keep;
   for (double const x : lit.bed.x) keep.push_back(x > from - rim && x < to + rim);
   lit.bed.retain(keep);
-  if (checked.optics.floor != "none") lit.surface = build->substrate;
+  if (checked.optics.floor != "none") lit.surface = build.substrate;
   lit.period = {0, machine.width};
-  lit.origin = fmt::format("layer {} of {}, spread by the recoater", build->layers_done, checked.run.layers);
+  lit.origin = fmt::format("layer {} of {}, spread by the recoater", build.layers_done, checked.run.layers);
   find_box(lit);
   lit.lower.x() = from, lit.upper.x() = to;
-  lit.lower.z() = -machine.layer_thickness * static_cast<double>(build->layers_done);
+  lit.lower.z() = -machine.layer_thickness * static_cast<double>(build.layers_done);
   keep_from_open_sides(lit);
   return lit;
 }

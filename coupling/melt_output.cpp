@@ -2,14 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/case_file.hpp"
 #include "core/error.hpp"
+#include "core/statistics.hpp"
+#include "core/vtkhdf.hpp"
 #include "core/write_file.hpp"
 #include "coupling/layer_output.hpp"
 #include "coupling/report/csv_table.hpp"
+#include "coupling/scan_path.hpp"
 #include "coupling/stopwatch.hpp"
 
 namespace layerloop::coupling {
@@ -33,25 +37,77 @@ json pool(MeltStudy const& study) {
   }
   all["depth_from_top"] = top;
   all["area"] = area;
+  if (study.bead_height.empty()) return all;
+  Sample const bead = sample_of(study.bead_height);
+  all["bead_height"] = bead.mean;
+  all["bead_height_sd"] = number(bead.sd);
   return all;
+}
+
+json fusion(Fusion const& f) {
+  return {{"unmelted_powder", f.unmelted_powder ? json(*f.unmelted_powder) : json(nullptr)},
+          {"unmelted_surface", f.unmelted_surface},
+          {"overlap_depth", f.overlap_depth},
+          {"elliptic_overlap_depth", f.elliptic_overlap_depth}};
+}
+
+json tracks(MeltStudy const& study) {
+  json all = json::array();
+  auto const& path = study.melted.exposure.source.tracks;
+  auto const back = return_times(path);
+  for (std::size_t t = 0; t < path.size(); ++t) {
+    PoolSize const& size = study.melted.heat.melt.track_pools[t];
+    Track const& track = path[t];
+    double const length = (track.end - track.begin).norm();
+    all.push_back({{"track", t + 1},
+                   {"x_begin", track.begin.x()},
+                   {"y_begin", track.begin.y()},
+                   {"x_end", track.end.x()},
+                   {"y_end", track.end.y()},
+                   {"begin_time", track.begin_time},
+                   {"power", track.power},
+                   {"speed", length / (track.end_time - track.begin_time)},
+                   {"return_time", back[t] ? json(*back[t]) : json(nullptr)},
+                   {"width", size.width},
+                   {"depth", size.depth},
+                   {"length", size.length}});
+  }
+  return all;
+}
+
+json consolidation(MeltStudy const& study) {
+  Consolidation const& part = study.build.record.layers.back().consolidation;
+  return {
+      {"melted_mass", part.melted_mass},     {"melted_mass_u_num", std::abs(part.melted_mass - part.melted_cell_mass)},
+      {"grains_melted", part.grains_melted}, {"grains_trapped", part.grains_trapped},
+      {"grains_moved", part.grains_moved},   {"part_relative_density", part.part_relative_density}};
 }
 
 json ledger(MeltStudy const& study) {
   Ledger const& l = study.build.record.ledger;
-  return {{"power_incident", l.power_incident},
-          {"power_absorbed", l.power_absorbed},
-          {"power_escaped", l.power_escaped},
-          {"power_attenuated", l.power_attenuated},
-          {"power_residual", l.power_residual},
-          {"power_rescaling", l.power_rescaling},
-          {"power_outside_grid", study.melted.exposure.mean.outside_grid},
-          {"ray_energy_relative_error", l.ray_energy_relative_error},
-          {"heat_in", l.heat_in},
-          {"heat_stored", l.heat_stored},
-          {"heat_out", l.heat_out},
-          {"heat_evaporated", study.melted.heat.heat_evaporated},
-          {"heat_energy_relative_error", l.heat_energy_relative_error},
-          {"mass_evaporated", l.mass_evaporated}};
+  json all{{"power_incident", l.power_incident},
+           {"power_absorbed", l.power_absorbed},
+           {"power_escaped", l.power_escaped},
+           {"power_residual", l.power_residual},
+           {"power_rescaling", l.power_rescaling},
+           {"power_outside_grid", study.melted.exposure.mean.outside_grid},
+           {"ray_energy_relative_error", l.ray_energy_relative_error},
+           {"heat_in", l.heat_in},
+           {"heat_stored", l.heat_stored},
+           {"heat_out", l.heat_out},
+           {"heat_evaporated", study.melted.heat.heat_evaporated},
+           {"heat_energy_relative_error", l.heat_energy_relative_error},
+           {"mass_evaporated", l.mass_evaporated}};
+  if (study.bead_height.empty()) return all;
+  all.update({{"mass_fed", l.mass_fed},
+              {"mass_bed", l.mass_bed},
+              {"mass_melted", l.mass_melted},
+              {"mass_relative_error", l.mass_relative_error},
+              {"particles_fed", l.particles_fed},
+              {"particles_bed", l.particles_bed},
+              {"particles_melted", l.particles_melted},
+              {"surface_height_correction", l.surface_height_correction}});
+  return all;
 }
 
 json grid(MeltStudy const& study) {
@@ -92,6 +148,16 @@ json definitions(MeltStudy const& study) {
       {"pool.*_u_num", two ? "difference to the grid with cells 1.5 times as large over 1.5^2 - 1 (Richardson, order 2 "
                              "assumed)"
                            : "half a cell in each direction, combined with the scatter between sections"},
+      {"pool.bead_height",
+       "highest metal over the original surface within the pool's width after the melt has settled, mean over the "
+       "sections; _sd: from section to section"},
+      {"tracks[].return_time", "since the beam passed next to the middle of this track on the nearest earlier one [s]"},
+      {"fusion",
+       "between the outermost tracks, over the middle half of their length: unmelted_powder: share of the powder's "
+       "volume that never melted; unmelted_surface: share of the area where the original surface never melted; "
+       "overlap_depth: smallest melted depth on any line along the tracks; elliptic_overlap_depth: that of half "
+       "ellipses of the pool's size (Tang et al. 2017)"},
+      {"time_above_liquidus", "longest of any cell [s]; the field is in heat_NNNN.h5"},
       {"isotherm", "heat.pool_isotherm = " + isotherm},
       {"start_temperature", "of metal and far field when the exposure began"},
       {"peak_temperature", "highest temperature that any cell reached"},
@@ -111,12 +177,30 @@ json definitions(MeltStudy const& study) {
   };
 }
 
-void write_sections(fs::path const& path, MeltRecord const& melt) {
+void write_sections(fs::path const& path, MeltStudy const& study) {
   CsvTable table(
-      "track,along [m],x [m],y [m],width [m],depth [m],depth_from_top [m],area [m2],area_below [m2],boiling_depth [m]");
-  for (TrackSection const& s : melt.sections)
+      "track,along [m],x [m],y [m],width [m],depth [m],depth_from_top [m],area [m2],area_below [m2],boiling_depth [m],"
+      "bead_height [m]");
+  auto const& sections = study.melted.heat.melt.sections;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    TrackSection const& s = sections[i];
     table.row({static_cast<double>(s.track + 1), s.along, s.x, s.y, s.width, s.depth, s.depth_from_top, s.area,
-               s.area_below, s.boiling_depth});
+               s.area_below, s.boiling_depth, study.bead_height.empty() ? 0.0 : study.bead_height[i]});
+  }
+  table.write(path);
+}
+
+void write_tracks(fs::path const& path, MeltStudy const& study) {
+  CsvTable table(
+      "track,x_begin [m],y_begin [m],x_end [m],y_end [m],begin_time [s],power [W],speed [m/s],return_time [s],"
+      "width [m],depth [m],length [m]");
+  for (json const& t : tracks(study)) {
+    std::vector<double> row;
+    for (char const* key : {"track", "x_begin", "y_begin", "x_end", "y_end", "begin_time", "power", "speed",
+                            "return_time", "width", "depth", "length"})
+      row.push_back(t.at(key).is_null() ? std::nan("") : t.at(key).get<double>());
+    table.row(row);
+  }
   table.write(path);
 }
 
@@ -153,6 +237,7 @@ json melt_summary(MeltStudy const& study) {
            {"isotherm", study.placed.heat.pool_isotherm},
            {"start_temperature", study.melted.start_temperature},
            {"peak_temperature", heat.peak_temperature},
+           {"time_above_liquidus", std::ranges::max(heat.melt.time_above_liquidus)},
            {"cooling_rate", study.cooling ? json(study.cooling->value) : json(nullptr)},
            {"cooling_rate_u_num", study.cooling ? json(study.cooling->u_num) : json(nullptr)},
            {"absorptivity", light.absorptivity},
@@ -170,10 +255,9 @@ json melt_summary(MeltStudy const& study) {
              {"io", time.io},
              {"total", time.total}}},
            {"definitions", definitions(study)}};
-  for (std::size_t t = 0; t < heat.melt.track_pools.size(); ++t) {
-    PoolSize const& size = heat.melt.track_pools[t];
-    all["tracks"].push_back({{"track", t + 1}, {"width", size.width}, {"depth", size.depth}, {"length", size.length}});
-  }
+  all["tracks"] = tracks(study);
+  if (study.fusion) all["fusion"] = fusion(*study.fusion);
+  if (!study.bead_height.empty()) all["solid"] = consolidation(study);
   return all;
 }
 
@@ -191,8 +275,13 @@ void MeltOutput::write(MeltStudy& study) const {
   MeltRecord const& melt = study.melted.heat.melt;
   {
     Stopwatch const timed(study.build.record.wall_time.io);
-    write_heat_file(folder_ / "heat_0001.h5", study.cells, melt);
-    write_sections(folder_ / "sections.csv", melt);
+    write_heat_file(folder_ / fmt::format("heat_{:04}.h5", study.layer), study.cells, melt);
+    if (!study.bead_height.empty()) {
+      write_bed_file(folder_ / fmt::format("bed_{:04}.h5", study.layer), study.build.bed, study.build.substrate, {});
+      write_stl(study.build.substrate, folder_ / fmt::format("solid_{:04}.stl", study.layer));
+    }
+    write_sections(folder_ / "sections.csv", study);
+    write_tracks(folder_ / "tracks.csv", study);
     write_probe(folder_ / "probe.csv", melt.probe);
   }
   json const summary = melt_summary(study);
@@ -202,6 +291,7 @@ void MeltOutput::write(MeltStudy& study) const {
                   {"absorptivity", summary.at("absorptivity")},
                   {"seconds", summary.at("wall_time").at("total")}};
   write_file(folder_ / "log.jsonl", line.dump() + "\n");
+  write_file(folder_ / "report.html", melt_page(folder_, study));
   write_file(folder_ / "summary.json", summary.dump(2) + "\n");
 }
 

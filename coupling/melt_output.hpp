@@ -12,6 +12,9 @@ nlohmann::json melt_summary(MeltStudy const& study);
 /// Highest peak above ambient on the sides and the bottom of the plate [K]: how far the far field is felt.
 double edge_temperature_rise(MeltStudy const& study);
 
+/// report.html, one page that needs no network.
+std::string melt_page(std::filesystem::path const& folder, MeltStudy const& study);
+
 /// Everything that the verb melt leaves in its folder. Only the root rank writes.
 class MeltOutput {
  public:

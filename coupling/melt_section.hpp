@@ -8,7 +8,7 @@
 
 namespace layerloop::coupling {
 
-/// Cuts across the tracks at a quarter, half and three quarters of their length.
+/// Cuts normal to the first track at a quarter, half and three quarters of its length.
 std::vector<MeltSection> melt_sections(MeltRecord const& melt, CellContent const& cells,
                                        std::vector<Track> const& tracks);
 

@@ -7,23 +7,25 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "coupling/consolidation.hpp"
 #include "coupling/effects/heat_accumulation.hpp"
 #include "coupling/ledger.hpp"
+#include "coupling/material_mass.hpp"
+#include "coupling/melt_bed.hpp"
 #include "coupling/melt_output.hpp"
-#include "coupling/part_surface_cgal.hpp"
-#include "coupling/solid_field.hpp"
+#include "coupling/scan_path.hpp"
 #include "coupling/stopwatch.hpp"
+#include "coupling/surface_level.hpp"
 #include "coupling/transfer.hpp"
 
 namespace layerloop::coupling {
 namespace {
 
-/// A bare plate, its top at z = 0.
-BuildState bare_plate(Case const& placed) {
-  BuildState build;
-  build.solid = empty_solid(placed);
-  build.substrate = mesh_solid(build.solid, placed);
-  return build;
+/// What the case asks to be melted.
+BuildState build_to_melt(Case& placed, MeltOptions const& options, Communicator const& comm) {
+  if (placed.melt.bed == MeltedBed::plate) return bare_plate(placed);
+  if (placed.melt.bed == MeltedBed::file) return plate_with_bed(placed, options.bed);
+  return spread_bed(placed, options.folder / "spread", comm, options.quiet);
 }
 
 struct Exposed {
@@ -31,12 +33,14 @@ struct Exposed {
   MeltedLayer melted;
 };
 
-Exposed expose(BuildState& build, Case const& placed, Communicator const& comm, thermal::Report report) {
-  CellContent cells =
-      cell_content(build.solid, build.bed, placed, placed.machine.deposition_begin(), placed.machine.deposition_end());
+Exposed expose(BuildState& build, Case const& placed, std::int32_t layer, Communicator const& comm,
+               thermal::Report report) {
+  std::array<double, 2> const whole{placed.machine.deposition_begin(), placed.machine.deposition_end()};
+  auto const [from, to] = placed.has_machine() ? heated_range(placed, layer) : whole;
+  CellContent cells = cell_content(build.solid, build.bed, placed, from, to);
   MeltSurface surface(build.solid, build.bed, build.substrate, cells, placed);
   MeltedLayer melted =
-      melt_layer(surface, cells, placed, start_temperature(placed, {}), 1, comm, report, build.record.wall_time);
+      melt_layer(surface, cells, placed, start_temperature(placed, {}), layer, comm, report, build.record.wall_time);
   return {std::move(cells), std::move(melted)};
 }
 
@@ -57,12 +61,69 @@ RegimeSigns signs_of(MeltStudy const& study) {
   signs.spot_radius = study.placed.laser.spot_radius();
   signs.molten = std::ranges::count(melt.melted, 1) > 0;
   signs.boils = study.melted.heat.peak_temperature >= study.placed.material.boiling_point;
-  signs.powder = study.build.bed.size() > 0;
-  for (TrackSection const& section : melt.sections) {
+  for (TrackSection const& section : melt.sections)
     signs.boiling_depth = std::max(signs.boiling_depth, section.boiling_depth);
-    signs.height += (section.depth_from_top - section.depth) / static_cast<double>(melt.sections.size());
-  }
+  for (double const height : study.bead_height) signs.height += height / static_cast<double>(study.bead_height.size());
   return signs;
+}
+
+/// Highest metal over the plate or part that the powder lay on, within the width of the pool at each section.
+std::vector<double> bead_heights(MeltStudy const& study, HeightMap const& before) {
+  HeightMap const after = top_of_solid(study.build.solid, study.placed);
+  std::vector<double> heights;
+  for (TrackSection const& section : study.melted.heat.melt.sections) {
+    Track const& track = study.melted.exposure.source.tracks[static_cast<std::size_t>(section.track)];
+    Vec3 const along = (track.end - track.begin).normalized(), across(-along.y(), along.x(), 0);
+    double highest = 0;
+    for (double s = -0.5 * section.width; s <= 0.5 * section.width; s += 0.5 * after.spacing) {
+      auto const i = static_cast<std::int32_t>(std::floor((section.x + s * across.x() - after.x0) / after.spacing)),
+                 j = static_cast<std::int32_t>(std::floor((section.y + s * across.y() - after.y0) / after.spacing));
+      if (i < 0 || i >= after.nx || j < 0 || j >= after.ny) continue;
+      highest = std::max(highest, after.at(i, j) - before.at(i, j));
+    }
+    heights.push_back(highest);
+  }
+  return heights;
+}
+
+/// What melted joins the solid, and the books are closed.
+void solidify(MeltStudy& study, LayerRecord& layer, std::vector<double> const& mass_before) {
+  BuildState& build = study.build;
+  Ledger& ledger = build.record.ledger;
+  ledger.particles_fed = static_cast<std::int64_t>(build.bed.size());
+  ledger.mass_fed = sum_of(mass_before);
+  build.record.mass_fed_by_material = mass_before;
+  HeightMap const before = top_of_solid(build.solid, study.placed);
+  {
+    Stopwatch const timed(build.record.wall_time.mesh);
+    layer.consolidation =
+        consolidate(build.solid, build.bed, build.substrate, study.melted.heat.melt, study.cells, study.placed);
+  }
+  ledger.particles_melted = layer.consolidation.grains_melted;
+  ledger.particles_trapped = layer.consolidation.grains_trapped;
+  ledger.mass_melted = layer.consolidation.melted_mass;
+  ledger.surface_height_correction = layer.consolidation.surface_height_correction;
+  study.bead_height = bead_heights(study, before);
+  audit(build, study.placed);
+}
+
+/// The pool in coarser cells on a plate of the same size.
+PoolSize pool_on_second_grid(MeltStudy& study, MeltOptions const& options, Communicator const& comm,
+                             thermal::Report report) {
+  Case coarse = with_cells(study.placed, coarsening * study.placed.heat.cell_size);
+  BuildState plate = build_to_melt(coarse, options, comm);
+  PoolSize const pool = expose(plate, coarse, study.layer, comm, report).melted.heat.melt.pool;
+  WallTime& wall_time = study.build.record.wall_time;
+  wall_time.heat += plate.record.wall_time.heat;
+  wall_time.rays += plate.record.wall_time.rays;
+  return pool;
+}
+
+void refuse_what_cannot_be(Case const& checked) {
+  if (checked.melt.two_grids && checked.has_machine())
+    throw InputError(
+        "melt.two_grids = true (the cells of a spread layer must divide machine.width) melt the bed that was spread by "
+        "--bed, or repeat with another heat.cell_size");
 }
 
 }  // namespace
@@ -101,35 +162,47 @@ std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidu
 }
 
 MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator const& comm) {
+  refuse_what_cannot_be(checked);
   MeltStudy study;
   study.estimate = estimate_pool(checked);
   study.placed = with_plate(checked, study.estimate);
+  scan_path(study.placed, 1);  // refuses a way that leaves the bed
   auto const report = comm.is_root() && !options.quiet ? thermal::Report::progress : thermal::Report::silent;
-  WallTime& wall_time = study.build.record.wall_time;
   MeltOutput const output(study.placed, options.folder, comm);
+  double making = 0, total = 0;
   {
-    Stopwatch const timed(wall_time.total);
-    study.build = bare_plate(study.placed);
-    auto [cells, melted] = expose(study.build, study.placed, comm, report);
+    Stopwatch const timed(total);
+    {
+      Stopwatch const made(making);
+      study.build = build_to_melt(study.placed, options, comm);
+    }
+    WallTime& wall_time = study.build.record.wall_time;
+    (checked.has_machine() ? wall_time.dem : wall_time.mesh) += making;
+    study.layer = std::max(1, study.build.layers_done);
+    bool const powder = study.build.bed.size() > 0;
+    auto [cells, melted] = expose(study.build, study.placed, study.layer, comm, report);
     study.cells = std::move(cells);
     study.melted = std::move(melted);
     MeltRecord const& melt = study.melted.heat.melt;
     study.u_num = melt.pool_u_num;
     if (checked.melt.two_grids) {
-      Case const coarse = with_cells(study.placed, coarsening * study.placed.heat.cell_size);
-      BuildState plate = bare_plate(coarse);
-      study.coarse = expose(plate, coarse, comm, report).melted.heat.melt.pool;
+      study.coarse = pool_on_second_grid(study, options, comm, report);
       study.u_num = error_of_two_grids(melt.pool, *study.coarse);
-      wall_time.heat += plate.record.wall_time.heat;
-      wall_time.rays += plate.record.wall_time.rays;
     }
-    study.regime = regime_of(signs_of(study));
-    study.cooling = cooling_rate(melt.probe, study.placed.material.solidus);
     LayerRecord layer;
-    layer.layer = 1;
+    layer.layer = study.layer;
     book_melting(layer, study.build.record.ledger, study.melted, study.cells);
+    if (powder) solidify(study, layer, mass_by_material(study.build.bed, study.placed));
+    RegimeSigns signs = signs_of(study);
+    signs.powder = powder;
+    study.regime = regime_of(signs);
+    study.cooling = cooling_rate(melt.probe, study.placed.material.solidus);
+    double const isotherm =
+        study.placed.heat.pool_isotherm == "solidus" ? checked.material.solidus : checked.material.liquidus;
+    study.fusion = fusion_of(melt, study.cells, study.melted.exposure.source.tracks, isotherm);
     study.build.record.layers.push_back(layer);
   }
+  study.build.record.wall_time.total = total;
   output.write(study);
   return study;
 }

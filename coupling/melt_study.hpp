@@ -6,6 +6,8 @@
 #include "core/case.hpp"
 #include "core/communicator.hpp"
 #include "coupling/build_state.hpp"
+#include "coupling/fusion.hpp"
+#include "coupling/lit_bed.hpp"
 #include "coupling/melt_layer.hpp"
 #include "coupling/melt_plate.hpp"
 
@@ -13,6 +15,7 @@ namespace layerloop::coupling {
 
 struct MeltOptions {
   std::filesystem::path folder;  ///< results go here; made when missing
+  BedSource bed;                 ///< where melt.bed is a file
   bool quiet = false;            ///< no progress
 };
 
@@ -49,18 +52,21 @@ std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidu
 struct MeltStudy {
   Case placed;  ///< with plate and cells as chosen
   PoolEstimate estimate;
-  BuildState build;
+  BuildState build;  ///< afterwards: with powder, what melted is part of the solid
+  std::int32_t layer = 1;
   MeltedLayer melted;
   CellContent cells;
   std::optional<PoolSize> coarse;  ///< pool in cells 1.5 times as large, with melt.two_grids
   PoolSize u_num;                  ///< of the pool
   Regime regime = Regime::none;
   std::optional<CoolingRate> cooling;
+  std::optional<Fusion> fusion;     ///< of a patch
+  std::vector<double> bead_height;  ///< of the solid above the plate or part at every section [m]; empty: no powder
 };
 
-/// Exposes a plate or bed to the scan of the case and writes summary.json, sections.csv, probe.csv, heat_0001.h5,
-/// case_resolved.toml, log.jsonl and report.html. \note Collective \throws InputError, FileError, PhysicsError,
-/// StoppedBySignal
+/// Exposes a plate or bed to the scan of the case and writes summary.json, sections.csv, tracks.csv, probe.csv,
+/// heat_NNNN.h5, case_resolved.toml, log.jsonl and report.html; with powder also bed_NNNN.h5 and solid_NNNN.stl. \note
+/// Collective \throws InputError, FileError, PhysicsError, StoppedBySignal
 MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator const& comm);
 
 /// Cells of the second grid over those of the first.

@@ -150,14 +150,16 @@ std::string headline(Case const& c, std::size_t layers) {
       chosen(1e3 * c.machine.recoating_speed), um(c.machine.deposition_length), um(c.machine.width));
   if (c.machine.frozen_zone) return text + "No laser: a zone of the bed was frozen and meshed.";
   if (!c.has_laser()) return text + "No laser: the powder stays as it was spread.";
+  static constexpr std::array definition{"1/e&sup2;", "D4&sigma;", "FWHM"};
+  std::string const spot = fmt::format("spot {} &micro;m ({}).", um(c.laser.spot_diameter),
+                                       definition[static_cast<std::size_t>(c.laser.spot_definition)]);
+  if (c.scan.kind == ScanKind::file) return text + fmt::format("The way of {}, {}", escape(c.scan.path), spot);
   std::string const tracks = c.scan.kind == ScanKind::hatch
                                  ? fmt::format("{} tracks of {} &micro;m a layer, {} &micro;m apart,", c.scan.tracks,
                                                um(c.scan.track_length), um(c.scan.hatch_spacing))
                                  : fmt::format("One track of {} &micro;m a layer", um(c.scan.track_length));
-  static constexpr std::array definition{"1/e&sup2;", "D4&sigma;", "FWHM"};
-  return text + fmt::format("{} at {} m/s and {} W, spot {} &micro;m ({}).", tracks, chosen(c.scan.scan_speed),
-                            chosen(c.laser.power), um(c.laser.spot_diameter),
-                            definition[static_cast<std::size_t>(c.laser.spot_definition)]);
+  return text +
+         fmt::format("{} at {} m/s and {} W, {}", tracks, chosen(c.scan.scan_speed), chosen(c.laser.power), spot);
 }
 
 std::string cards(ReportInput const& input) {
