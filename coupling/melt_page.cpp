@@ -85,7 +85,7 @@ std::string top_view(MeltStudy const& study) {
                           "liquidus"};
   Raster const values = raster;
   Outline const molten{[values, liquidus = metal.liquidus](int i, int j) { return values.at(i, j) >= liquidus; },
-                       "fill:none;stroke:#fff;stroke-width:1"};
+                       "outline-melted"};
   return figure(map_plot(raster, scale, "x [\xc2\xb5m]", "y [\xc2\xb5m]", {molten}, 1000),
                 "Highest temperature that each place reached, seen from above; the line encloses what melted.");
 }

@@ -44,7 +44,7 @@ TEST(ScanPath, RotationByHalfATurnSwapsOrderAndDirection) {
 }
 
 TEST(ScanPath, HeatedRangeHoldsTracksAndMargin) {
-  auto const [from, to] = heated_range(hatch_case());
+  auto const [from, to] = heated_range(hatch_case(), 1);
   EXPECT_NEAR(from, 450e-6, 1e-15);
   EXPECT_NEAR(to, 950e-6, 1e-15);
 }
