@@ -172,7 +172,9 @@ json definitions(MeltStudy const& study) {
       {"regime",
        "none: no cell melts; no_fusion: what melts does not reach below the original surface; balling: on powder, "
        "longer than pi times its width (Rayleigh-Plateau) and mostly above that surface; conduction: all metal stays "
-       "below the boiling point; keyhole: what boils reaches deeper than the 1/e2 radius; transition: not as deep"},
+       "below the boiling point; keyhole: the vapour depression is deeper than the 1/e2 radius; transition: not as "
+       "deep"},
+      {"depression_depth", "of the effect keyhole where it is on, else how deep the boiling point reached"},
       {"grid.largest_edge_temperature_rise", "highest peak above ambient on the sides and the bottom of the plate [K]"},
   };
 }
@@ -235,6 +237,7 @@ json melt_summary(MeltStudy const& study) {
            {"pool", pool(study)},
            {"regime", name_of(study.regime)},
            {"isotherm", study.placed.heat.pool_isotherm},
+           {"depression_depth", depression_of(study)},
            {"start_temperature", study.melted.start_temperature},
            {"peak_temperature", heat.peak_temperature},
            {"time_above_liquidus", std::ranges::max(heat.melt.time_above_liquidus)},

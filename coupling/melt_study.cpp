@@ -61,8 +61,7 @@ RegimeSigns signs_of(MeltStudy const& study) {
   signs.spot_radius = study.placed.laser.spot_radius();
   signs.molten = std::ranges::count(melt.melted, 1) > 0;
   signs.boils = study.melted.heat.peak_temperature >= study.placed.material.boiling_point;
-  for (TrackSection const& section : melt.sections)
-    signs.boiling_depth = std::max(signs.boiling_depth, section.boiling_depth);
+  signs.depression = depression_of(study);
   for (double const height : study.bead_height) signs.height += height / static_cast<double>(study.bead_height.size());
   return signs;
 }
@@ -139,7 +138,7 @@ Regime regime_of(RegimeSigns const& signs) {
   bool const free_cylinder = signs.pool.length > std::numbers::pi * signs.pool.width;
   if (signs.powder && free_cylinder && signs.height > signs.pool.depth) return Regime::balling;
   if (!signs.boils) return Regime::conduction;
-  return signs.boiling_depth > signs.spot_radius ? Regime::keyhole : Regime::transition;
+  return signs.depression > signs.spot_radius ? Regime::keyhole : Regime::transition;
 }
 
 std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidus) {
@@ -159,6 +158,14 @@ std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidu
   double const time = to->at(0) - from->at(0), rate = span / time;
   // The temperature between two samples is a straight line: wrong by a part of what one step changes.
   return CoolingRate{rate, rate * 0.5 * std::hypot(from->at(1), to->at(1)) / time};
+}
+
+double depression_of(MeltStudy const& study) {
+  if (study.placed.effect_strength("keyhole") > 0) return study.melted.heat.keyhole_depth;
+  double deepest = 0;
+  for (TrackSection const& section : study.melted.heat.melt.sections)
+    deepest = std::max(deepest, section.boiling_depth);
+  return deepest;
 }
 
 MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator const& comm) {

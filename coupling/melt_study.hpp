@@ -26,18 +26,18 @@ std::string const& name_of(Regime regime);
 /// What the regime is told from. SI.
 struct RegimeSigns {
   PoolSize pool;
-  double height = 0;         ///< of the molten bead above the surface that the powder was spread on
-  double boiling_depth = 0;  ///< of what was at the boiling point, below that surface
-  double spot_radius = 0;    ///< 1/e2
-  bool molten = false;       ///< any cell
-  bool boils = false;        ///< any cell
+  double height = 0;       ///< of the molten bead above the surface that the powder was spread on
+  double depression = 0;   ///< depression_of()
+  double spot_radius = 0;  ///< 1/e2
+  bool molten = false;     ///< any cell
+  bool boils = false;      ///< any cell
   bool powder = false;
 };
 
 /// none: no cell melts. no_fusion: what melts does not reach below the surface that the powder was spread on. balling:
 /// on powder, a pool longer than its circumference as a free cylinder, pi times its width (Rayleigh and Plateau), most
-/// of which stands above that surface. conduction: the metal stays below the boiling point. keyhole: what boils reaches
-/// deeper than the beam's 1/e2 radius. transition: it boils, but not as deep.
+/// of which stands above that surface. conduction: the metal stays below the boiling point. keyhole: the vapour
+/// depression is deeper than the beam's 1/e2 radius. transition: it boils, but not as deep.
 Regime regime_of(RegimeSigns const& signs);
 
 /// Cooling of the probed surface, from the solidus to 100 K below it, after it was last molten.
@@ -45,7 +45,7 @@ struct CoolingRate {
   double value = 0;  ///< [K/s]
   double u_num = 0;  ///< one time step at either end
 };
-/// Nothing when the probe did not melt, or the exposure ended before it was cold. \param isotherm  molten above [K]
+/// Nothing when the probe did not melt, or the exposure ended before it was cold.
 std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidus);
 
 /// One exposure and what explains it.
@@ -63,6 +63,10 @@ struct MeltStudy {
   std::optional<Fusion> fusion;     ///< of a patch
   std::vector<double> bead_height;  ///< of the solid above the plate or part at every section [m]; empty: no powder
 };
+
+/// Depth of the vapour depression [m]: that of the effect keyhole where it is on, else how deep the boiling point
+/// reached below the surface that the powder was spread on.
+double depression_of(MeltStudy const& study);
 
 /// Exposes a plate or bed to the scan of the case and writes summary.json, sections.csv, tracks.csv, probe.csv,
 /// heat_NNNN.h5, case_resolved.toml, log.jsonl and report.html; with powder also bed_NNNN.h5 and solid_NNNN.stl. \note

@@ -166,9 +166,9 @@ TEST(Regime, FollowsWhatMeltsAndBoils) {
   RegimeSigns signs{.pool = {100e-6, 30e-6, 250e-6}, .spot_radius = 40e-6, .molten = true};
   EXPECT_EQ(regime_of({}), Regime::none);
   EXPECT_EQ(regime_of(signs), Regime::conduction);
-  signs.boils = true, signs.boiling_depth = 10e-6;
+  signs.boils = true, signs.depression = 10e-6;
   EXPECT_EQ(regime_of(signs), Regime::transition);
-  signs.boiling_depth = 50e-6;
+  signs.depression = 50e-6;
   EXPECT_EQ(regime_of(signs), Regime::keyhole);
   signs.powder = true, signs.pool.depth = 0;
   EXPECT_EQ(regime_of(signs), Regime::no_fusion);
