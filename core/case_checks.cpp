@@ -363,21 +363,22 @@ class CaseChecks {
     std::string const turned =
         s > 1e-9 ? fmt::format(" at {} in layer {}", format_quantity(scan.angle(layer), Dimension::angle), layer) : "";
     double const excess_x = x - c_.machine.deposition_length, excess_y = y - c_.machine.width;
+    bool stays = true;
     if (known({"machine.deposition_length"}) && excess_x > 1e-12) {
+      stays = false;
       report("scan.track_length",
              "= {} (beam off the bed: track and spot need {}{}, the deposition zone has {}) shorten the track by {}",
              length(scan.track_length), length(x), turned, length(c_.machine.deposition_length), length(excess_x));
-      return false;
     }
     if (known({"machine.width"}) && excess_y > 1e-12) {
+      stays = false;
       bool const hatch = scan.tracks > 1;
       report(hatch ? "scan.hatch_spacing" : "laser.spot_diameter",
              "= {} (beam off the bed: {} tracks and the spot need {}{}, machine.width is {}) narrow them by {}",
              length(hatch ? scan.hatch_spacing : c_.laser.spot_diameter), scan.tracks, length(y), turned,
              length(c_.machine.width), length(excess_y));
-      return false;
     }
-    return true;
+    return stays;
   }
 
   /// The lattice that holds the part and the heat grid: periodic in y, from end to end of the deposition zone in x.

@@ -197,8 +197,9 @@ MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator
       study.u_num = error_of_two_grids(melt.pool, *study.coarse);
     }
     LayerRecord layer;
-    layer.layer = study.layer;
+    layer.layer = 1;  // the ledger of the melting is of this layer alone
     book_melting(layer, study.build.record.ledger, study.melted, study.cells);
+    layer.layer = study.layer;
     if (powder) solidify(study, layer, mass_by_material(study.build.bed, study.placed));
     RegimeSigns signs = signs_of(study);
     signs.powder = powder;
