@@ -81,9 +81,11 @@ BuildState plate_with_bed(Case& placed, BedSource const& source) {
   for (std::size_t i = 0; i < file.bed.size(); ++i) {
     file.bed.material[i] = 0;
     if (file.bed.z[i] - floor < 0.9 * file.bed.radius[i])
-      throw InputError(fmt::format(
-          "{}: grain {} is in the floor (z = {:.4g} m, radius {:.4g} m, floor at {:.4g} m) give its level by --floor-z",
-          source.bed.string(), file.bed.id[i], file.bed.z[i], file.bed.radius[i], floor));
+      throw InputError(
+          fmt::format("{}: grain {} is in the floor (z = {:.4g} m, radius {:.4g} m, floor at {:.4g} m) give its level "
+                      "by --floor-z; of a whole machine "
+                      "keep the deposition zone alone, or melt the case that spreads it",
+                      source.bed.string(), file.bed.id[i], file.bed.z[i], file.bed.radius[i], floor));
   }
   placed.powder.diameters = {2 * std::ranges::max(file.bed.radius)};
   BuildState build = bare_plate(placed);

@@ -146,7 +146,7 @@ json definitions(MeltStudy const& study) {
        "extent along the track of what is above the isotherm at one instant, mean over instants about mid-track"},
       {"pool.area", "area of the section inside the isotherm, molten powder included"},
       {"pool.*_u_num", two ? "difference to the grid with cells 1.5 times as large over 1.5^2 - 1 (Richardson, order 2 "
-                             "assumed)"
+                             "assumed), combined with the scatter between sections"
                            : "half a cell in each direction, combined with the scatter between sections"},
       {"pool.bead_height",
        "highest metal over the original surface within the pool's width after the melt has settled, mean over the "

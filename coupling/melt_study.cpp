@@ -44,14 +44,16 @@ Exposed expose(BuildState& build, Case const& placed, std::int32_t layer, Commun
   return {std::move(cells), std::move(melted)};
 }
 
-/// Error of the finer grid by Richardson's extrapolation; the order is taken to be 2.
-double extrapolated_error(double fine, double coarse) {
-  return std::abs(coarse - fine) / (coarsening * coarsening - 1);
-}
-
-PoolSize error_of_two_grids(PoolSize const& fine, PoolSize const& coarse) {
-  return {extrapolated_error(fine.width, coarse.width), extrapolated_error(fine.depth, coarse.depth),
-          extrapolated_error(fine.length, coarse.length)};
+/// Error of the finer grid by Richardson's extrapolation, the order taken to be 2, in the place of half a cell; the
+/// scatter between sections stays.
+PoolSize error_of_two_grids(MeltRecord const& fine, PoolSize const& coarse) {
+  PoolSize error;
+  for (auto member : {&PoolSize::width, &PoolSize::depth, &PoolSize::length}) {
+    double const half_cell = 0.5 * fine.grid.cell, u = fine.pool_u_num.*member;
+    double const scatter = std::sqrt(std::max(0.0, u * u - half_cell * half_cell));
+    error.*member = std::hypot((coarse.*member - fine.pool.*member) / (coarsening * coarsening - 1), scatter);
+  }
+  return error;
 }
 
 RegimeSigns signs_of(MeltStudy const& study) {
@@ -194,7 +196,7 @@ MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator
     study.u_num = melt.pool_u_num;
     if (checked.melt.two_grids) {
       study.coarse = pool_on_second_grid(study, options, comm, report);
-      study.u_num = error_of_two_grids(melt.pool, *study.coarse);
+      study.u_num = error_of_two_grids(melt, *study.coarse);
     }
     LayerRecord layer;
     layer.layer = 1;  // the ledger of the melting is of this layer alone

