@@ -88,18 +88,22 @@ void bench_tracks(BenchOptions const& options) {
   nlohmann::ordered_json json{{"cell", options.cell}};
   auto const run = [&](char const* name, char const* metal, double absorbed, TrackSteps steps) {
     auto const r = thermal::bench_track(built_in_materials().at(metal), absorbed, steps, options.cell);
-    json[name] = {{"seconds", r.seconds},
+    double const best = json.contains(name) ? std::min(r.seconds, json[name]["seconds"].get<double>()) : r.seconds;
+    json[name] = {{"seconds", best},
                   {"sweeps", r.sweeps},
                   {"stable_step", r.stable_step},
                   {"width", r.pool.width},
                   {"depth", r.pool.depth},
                   {"length", r.pool.length},
                   {"heat_energy_relative_error", r.heat_error}};
-    return r.seconds;
+    return best;
   };
-  double const all = run("316L_all_cells", "316L", 20, TrackSteps::all_cells);
-  double const asleep = run("316L", "316L", 20, TrackSteps::automatic);
-  double const aluminium = run("AlSi10Mg", "AlSi10Mg", 36, TrackSteps::automatic);
+  double all = 0, asleep = 0, aluminium = 0;
+  for (int round = 0; round < 3; ++round) {  // the fastest of three: others use the machine too
+    all = run("316L_all_cells", "316L", 20, TrackSteps::all_cells);
+    asleep = run("316L", "316L", 20, TrackSteps::automatic);
+    aluminium = run("AlSi10Mg", "AlSi10Mg", 36, TrackSteps::automatic);
+  }
   if (options.plain) run("AlSi10Mg_explicit", "AlSi10Mg", 36, TrackSteps::cold_cells_asleep);
   json["asleep_over_all"] = asleep / all;
   json["AlSi10Mg_over_316L"] = aluminium / asleep;

@@ -1,16 +1,11 @@
 #!/usr/bin/env python3
 """Core-seconds per millimetre of track against the error of the pool that the cells make: `layerloop bench heat --tracks`
-over cell sizes, a table and a picture. The reference is Richardson's, from the two finest grids at second order."""
+over cell sizes, as a table. The reference is Richardson's, from the two finest grids at second order."""
 import argparse
 import csv
 import json
 import subprocess
 from pathlib import Path
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 TRACK = 0.5  # [mm]
 
@@ -27,7 +22,6 @@ def main():
         result = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         rows += [(name, cell, result[name]) for name in ("316L", "AlSi10Mg")]
     options.o.mkdir(parents=True, exist_ok=True)
-    fig, axes = plt.subplots(figsize=(6, 4))
     with open(options.o / "cost.csv", "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["metal", "cell [um]", "cost [core-s/mm]", "sweeps", "width [um]", "depth [um]", "length [um]",
@@ -42,14 +36,6 @@ def main():
             for (cell, r), cost, error in zip(runs, costs, errors):
                 table.writerow([metal, cell, f"{cost:.4g}", r["sweeps"], f"{1e6 * r['width']:.3f}",
                                 f"{1e6 * r['depth']:.3f}", f"{1e6 * r['length']:.2f}", f"{error:.3f}"])
-            axes.loglog([abs(e) for e in errors], costs, "o-", label=metal)
-            for (cell, _), error, cost in zip(runs, errors, costs):
-                axes.annotate(f"{cell:g}", (abs(error), cost), textcoords="offset points", xytext=(4, 4), fontsize=8)
-    axes.set_xlabel("error of the pool's depth from the cells [%]")
-    axes.set_ylabel("core-seconds per mm of track")
-    axes.legend(title="cells in um")
-    fig.tight_layout()
-    fig.savefig(options.o / "cost.png", dpi=120)
 
 
 if __name__ == "__main__":

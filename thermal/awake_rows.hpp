@@ -19,8 +19,8 @@ struct CellPower {
 /// far around as heat can move before this is looked at again, one cell a step.
 class AwakeRows {
  public:
-  /// `rise` as a share of the enthalpy at the solidus: 1.5 K in steel, which moves its pool by 0.02 %.
-  static constexpr double share_of_solidus = 1e-3;
+  /// `rise` as a share of the enthalpy at the solidus: 3 K in steel, which moves its pool by 0.04 % at most.
+  static constexpr double share_of_solidus = 2e-3;
 
   enum class Cold { asleep, awake };
   Cold cold = Cold::asleep;

@@ -42,8 +42,8 @@ using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now
 /// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `latent_heat`, `variable_conductivity`,
 /// `evaporation`, `surface_losses` and `keyhole` as switched on. Far field: at ambient, heat.substrate_depth below the
 /// bottom and heat.margin beyond the sides (the distance of the heated patch, which is exact for a steady point source
-/// on a half space). HeatSolver::automatic steps explicitly; where the beam moves by less than a cell in many steps, and
-/// with growing steps while it is off, it takes super steps. Metal that is still cold is left out.
+/// on a half space). HeatSolver::automatic steps explicitly; where the beam moves by less than a cell in many steps,
+/// and with growing steps while it is off, it takes super steps. Metal that is still cold is left out.
 ///
 /// \throws InputError    arrays and times that do not fit (before any computing)
 /// \throws PhysicsError  NaN; metal above 1.5 boiling points, or with evaporation 2000 K above it; heat that does not

@@ -21,7 +21,7 @@ constexpr std::int64_t many_iterations = 12;
 /// Automatic choice: super steps where one replaces this many explicit ones for each of its stages.
 constexpr double super_gain = 3;
 /// The beam moves by at most this share of its width in a super step.
-constexpr double super_travel = 1.0 / 6;
+constexpr double super_travel = 1.0 / 8;
 /// A stretch of constant powers with the beam on is this long a travel, in cells.
 constexpr double stretch_travel = 2;
 /// Enthalpy, as a share of the largest, up to which metal may sleep with the beam off.

@@ -11,12 +11,14 @@
 
 namespace layerloop::thermal {
 
-/// Moves to the first entry from `cell` on, in a list that ascends by cell.
+/// Moves to the first entry from `cell` on, in a list that ascends by cell. Mostly it is near.
 template <class Iterator>
 void skip_to(Iterator& at, Iterator end, std::int64_t cell) {
   using Entry = std::iter_value_t<Iterator>;
-  if (at != end && at->cell < cell)
-    at = std::lower_bound(at, end, cell, [](Entry const& e, auto c) { return e.cell < c; });
+  std::iter_difference_t<Iterator> reach = 1;
+  while (reach < end - at && at[reach].cell < cell) at += reach, reach *= 2;
+  Iterator const last = at + std::min<std::iter_difference_t<Iterator>>(reach + 1, end - at);
+  at = std::lower_bound(at, last, cell, [](Entry const& e, auto c) { return e.cell < c; });
 }
 
 /// A part of the planes along z, worked through upwards by one thread. A rule that updates the enthalpy in place needs
@@ -215,7 +217,9 @@ double sweep(HeatSystem& system, std::span<CellPower const> source, std::vector<
     slab.advance();
   }
   double far = 0;
-  for (double const flow : system.scratch.far_flow) far += flow;
+  double const* const flow = system.scratch.far_flow.data();
+#pragma omp simd reduction(+ : far)
+  for (std::size_t f = 0; f < system.scratch.far_flow.size(); ++f) far += flow[f];
   return far * system.conduction.cell;
 }
 

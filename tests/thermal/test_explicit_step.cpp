@@ -105,6 +105,29 @@ TEST(ExplicitStep, SleepingCellsLeaveTheSameBits) {
   EXPECT_EQ(run(false), run(true));
 }
 
+/// Metal that keeps its heat while it is cold changes the hottest place of a pool, and its size, by less than 0.1 %.
+TEST(ExplicitStep, SleepMovesThePoolByLessThanAThousandth) {
+  auto const pool = [](double floor) {
+    HeatedBlock block(solid_block(5e-6, {60, 60, 40}), built_in_materials().at("316L"), {150e-6, 150e-6});
+    block.system.floor *= floor;
+    std::vector<CellPower> source;
+    for (std::int32_t j = 25; j < 35; ++j) {
+      for (std::int32_t i = 25; i < 35; ++i) source.push_back({block.local(i, j, 39), 0.08});
+    }
+    double const step = 0.9 * stable_step(block.system.conduction, block.table);
+    for (int s = 0; s < 250; ++s) explicit_step(block.system, source, step);
+    double melt = 0;  // enthalpy above the solidus: moves smoothly, unlike a count of cells
+    for (double const h : block.system.enthalpy) melt += std::max(0.0, h - block.table.solidus());
+    return std::pair{hottest(block.system), melt};
+  };
+  auto const [top, melt] = pool(1);
+  auto const [exact_top, exact_melt] = pool(1e-6);
+  EXPECT_GT(exact_melt, 0);
+  EXPECT_NE(melt, exact_melt);
+  EXPECT_NEAR(top / exact_top, 1, 1e-3);
+  EXPECT_NEAR(melt / exact_melt, 1, 1e-3);
+}
+
 TEST(ExplicitStep, ThreadsLeaveTheSameBits) {
   CellContent const content = plate_with_grains({20, 14, 12}, 6);
   HeatSettings settings = closed_settings(5e-6);

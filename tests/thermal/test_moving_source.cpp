@@ -104,6 +104,7 @@ FieldError eagar_tsai_error(double cell) {
   auto const count = [&](double size) { return static_cast<std::int32_t>(std::lround(size / cell)); };
   HeatedBlock block(plate(cell, {count(680e-6), count(240e-6), count(120e-6)}), constant_metal(24, 7300, 789),
                     {110e-6, 120e-6}, 0, SideY::far_field, 13000);
+  block.system.floor *= 0.1;  // what sleeping metal costs is another test's
   double const x = 600e-6;
   sweep(block, reference, 100e-6, x);
   std::array<Vec3, 5> const points{Vec3{0, 0, 0}, Vec3{-50e-6, 0, 0}, Vec3{-200e-6, 0, 0}, Vec3{0, 40e-6, 0},
