@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <mpi.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 
 #include "apps/verbs.hpp"
 #include "core/communicator.hpp"
@@ -20,6 +22,15 @@ int end_with(Communicator const& comm, ExitCode code, std::string const& message
   if (comm.is_root() || !everywhere) tell(message);
   if (comm.size() > 1 && !everywhere) MPI_Abort(comm.handle(), static_cast<int>(code));
   return static_cast<int>(code);
+}
+
+/// Threads that wait for one another burn the processor by default, for milliseconds: on a machine with other work on it
+/// most of the time goes there. Some ten microseconds bridge the gaps between parallel loops. OpenMP reads this before
+/// main, so the program starts itself once more; where that fails it goes on as it is.
+void wait_briefly(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  setenv("GOMP_SPINCOUNT", "1000", 1);
+  execv("/proc/self/exe", argv);
 }
 
 int perform(apps::Action const& action) {
@@ -41,6 +52,7 @@ int perform(apps::Action const& action) {
 /// The program `layerloop`: one verb a file.
 int main(int argc, char** argv) {
   using namespace layerloop;
+  wait_briefly(argv);
   CLI::App program("Laser powder bed fusion, layer by layer: spread, trace, melt, mesh, and the next layer on it.",
                    "layerloop");
   program.require_subcommand(1);
