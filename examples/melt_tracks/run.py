@@ -1,0 +1,58 @@
+"""Runs `layerloop melt`; what has been computed once, by the same program from the same case, is not computed again."""
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+
+HERE = pathlib.Path(__file__).parent
+
+
+class Melt:
+    def __init__(self, program, out, jobs, accept_older):
+        self.program, self.out, self.jobs, self.accept_older = program.resolve(), out, jobs, accept_older
+        self.build = hashlib.sha256(self.program.read_bytes()).hexdigest()
+        out.mkdir(parents=True, exist_ok=True)
+
+    def __call__(self, cases):
+        """[(case file, settings, further arguments), ...] side by side; their summaries, None where a run stopped."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            return list(pool.map(lambda case: self.one(*case), cases))
+
+    def one(self, case, settings, arguments=()):
+        folder = self.folder("melt", case, settings, arguments)
+        summary = folder / "summary.json"
+        if not self.fresh(folder):
+            shutil.rmtree(folder, ignore_errors=True)
+            done = self.start("melt", case, settings, arguments, folder)
+            folder.mkdir(exist_ok=True)
+            (folder / "build.txt").write_text(self.build)
+            if done.returncode == 3:  # a guard of the physics; kept, so that it is not tried again
+                summary.write_text("null")
+                (folder / "stopped.txt").write_text(done.stderr)
+            elif done.returncode:
+                raise RuntimeError(f"{' '.join(map(str, done.args))}\n{done.stderr}")
+            for large in folder.glob("*.h5"):
+                large.unlink()
+        return json.loads(summary.read_text())
+
+    def folder(self, verb, case, settings, arguments):
+        told = json.dumps([verb, (HERE / case).read_text(), sorted(settings.items()), [file_or_word(a) for a in arguments]])
+        return self.out / hashlib.sha256(told.encode()).hexdigest()[:16]
+
+    def fresh(self, folder):
+        mark = folder / "build.txt"
+        return (folder / "summary.json").exists() and mark.exists() and (self.accept_older or mark.read_text() == self.build)
+
+    def start(self, verb, case, settings, arguments, folder):
+        sets = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+        return subprocess.run([self.program, verb, HERE / case, *arguments, *sets, "-o", folder, "--quiet", "--threads", "1"],
+                              capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+
+
+def file_or_word(argument):
+    """What an argument says: of a file its contents."""
+    path = pathlib.Path(argument)
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else str(argument)
