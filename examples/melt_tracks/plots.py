@@ -54,3 +54,31 @@ def groups(path, tracks, residuals, second, repeats):
               title="the same setting in both batches")
     right.legend(fontsize=7)
     save(figure, path)
+
+
+def residuals(path, tracks, errors):
+    """tracks: (name, power, speed, ...); errors: {model: [(ln width ratio, ln depth ratio), ...]}."""
+    figure, axes = plt.subplots(1, 2, figsize=(8.6, 3.4), sharey=True)
+    power = [t[1] for t in tracks]
+    for axis, n, name in zip(axes, (0, 1), ("width", "depth")):
+        for (model, values), colour, marker in zip(errors.items(), (BLUE, RED), ("o", "^")):
+            axis.plot(power, [v[n] for v in values], marker, color=colour, ms=4, ls="", label=model)
+        axis.axhline(0, color=GREY, lw=0.6)
+        axis.set(xlabel="power [W]", title=name)
+    axes[0].set_ylabel("ln(computed / measured)")
+    axes[0].legend(fontsize=7)
+    save(figure, path)
+
+
+def absorptivity(path, tracks):
+    """Absorptivity and depth against power beside the calorimetry and the sections."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.6))
+    power = [t["power"] for t in tracks]
+    left.plot(power, [t["measured"][2] for t in tracks], "o", color=GREY, label="Trapp et al. 2017")
+    left.plot(power, [t["absorptivity"] or np.nan for t in tracks], "^-", color=RED, label="here")
+    left.set(xlabel="power [W]", ylabel="absorptivity", ylim=(0, 1))
+    left.legend()
+    right.errorbar(power, [t["measured"][1] * 1e6 for t in tracks], yerr=3, fmt="o", color=GREY, lw=0.8)
+    right.plot(power, [t["depth"] * 1e6 for t in tracks], "^-", color=RED)
+    right.set(xlabel="power [W]", ylabel="depth [um]")
+    save(figure, path)

@@ -22,21 +22,30 @@ class Melt:
             return list(pool.map(lambda case: self.one(*case), cases))
 
     def one(self, case, settings, arguments=()):
-        folder = self.folder("melt", case, settings, arguments)
-        summary = folder / "summary.json"
-        if not self.fresh(folder):
-            shutil.rmtree(folder, ignore_errors=True)
-            done = self.start("melt", case, settings, arguments, folder)
+        return json.loads((self.done("melt", case, settings, arguments) / "summary.json").read_text())
+
+    def spread(self, cases):
+        """The same of `layerloop spread`; the folders."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            return list(pool.map(lambda case: self.done("spread", *case), cases))
+
+    def done(self, verb, case, settings, arguments):
+        """The folder of a run that is there now."""
+        folder = self.folder(verb, case, settings, arguments)
+        if self.fresh(folder):
+            return folder
+        shutil.rmtree(folder, ignore_errors=True)
+        run = self.start(verb, case, settings, arguments, folder)
+        if run.returncode == 3:  # a guard of the physics; kept, so that it is not tried again
             folder.mkdir(exist_ok=True)
-            (folder / "build.txt").write_text(self.build)
-            if done.returncode == 3:  # a guard of the physics; kept, so that it is not tried again
-                summary.write_text("null")
-                (folder / "stopped.txt").write_text(done.stderr)
-            elif done.returncode:
-                raise RuntimeError(f"{' '.join(map(str, done.args))}\n{done.stderr}")
-            for large in folder.glob("*.h5"):
-                large.unlink()
-        return json.loads(summary.read_text())
+            (folder / "summary.json").write_text("null")
+            (folder / "stopped.txt").write_text(run.stderr)
+        elif run.returncode:
+            raise RuntimeError(f"{' '.join(map(str, run.args))}\n{run.stderr}")
+        for large in folder.glob("*.h5"):
+            large.unlink()
+        (folder / "build.txt").write_text(self.build)
+        return folder
 
     def folder(self, verb, case, settings, arguments):
         told = json.dumps([verb, (HERE / case).read_text(), sorted(settings.items()), [file_or_word(a) for a in arguments]])

@@ -1,0 +1,299 @@
+"""docs/melt-tracks.md out of the results of study.py."""
+import csv
+import math
+import pathlib
+
+import numpy as np
+
+import groups
+import measured
+import plots
+import powder as powder_tracks
+
+HERE = pathlib.Path(__file__).parent
+NOT_RUN = "Not computed in this run of the study.\n"
+
+
+def um(value, digits=1):
+    return "-" if value is None or math.isnan(value) else f"{value * 1e6:.{digits}f}"
+
+
+def percent(value):
+    return f"{100 * value:+.0f} %"
+
+
+def off(computed, told):
+    """ln(computed / measured) as per cent; - where either is missing."""
+    value = math.log(computed / told) if computed and told and computed == computed and told == told else math.nan
+    return "-" if math.isnan(value) else percent(value)
+
+
+def pm(value, half, digits=2):
+    return f"{value:.{digits}f} ± {half:.{digits}f}"
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows]) + "\n"
+
+
+def write_csv(path, head, rows):
+    with open(path, "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
+
+
+def by_name():
+    return {t.name: t for t in measured.hofmann()}
+
+
+def words_of_groups(found, folder):
+    tracks = groups.of(0.0)
+    values = groups.shapes(tracks)
+    columns = groups.basis(tracks, 2)
+    pairs = {f"{s * 1e6:.0f}": groups.repeats(s) for s in groups.SURFACES}
+    plots.groups(folder / "groups.png", tracks, values - columns @ groups.fit(columns, values),
+                 set(found["groups"]["0"]["members"]), pairs)
+    step = table(("powder [um]", "pairs", "width fine / coarse", "depth", "area", "depth, beside a smooth fit of all tracks"),
+                 [(name, len(found["repeats"][name]),
+                   *(pm(math.exp(found["batch_step"][name][k][0]), math.exp(found["batch_step"][name][k][0])
+                        * found["batch_step"][name][k][1]) for k in ("width", "depth", "area")),
+                   pm(math.exp(found["batch_in_fit"][name]["depth"][0]),
+                      math.exp(found["batch_in_fit"][name]["depth"][0]) * found["batch_in_fit"][name]["depth"][1]))
+                  for name in ("0", "30", "60")])
+    scatter = table(("powder [um]", "one track, width", "95 %", "depth", "95 %"),
+                    [(name, *(cell for k in ("width", "depth") for cell in
+                              (f"{100 * found['batch_step'][name][k][2]:.0f} %",
+                               f"{100 * found['batch_step'][name][k][3][0]:.0f} to {100 * found['batch_step'][name][k][3][1]:.0f} %")))
+                     for name in ("0", "30", "60")])
+    two = table(("tracks", "n", "2 ln(likelihood ratio)", "gain in BIC", "p (bootstrap)", "second group: share, width, depth",
+                 "depth scatter one / two groups"),
+                [(label, g["n"], f"{g['ratio']:.1f}", f"{g['bic']:.1f}", f"{g['p']:.3f}",
+                  f"{g['share']:.2f}, x {math.exp(g['offset'][0]):.2f}, x {math.exp(g['offset'][1]):.2f}",
+                  f"{100 * g['without'][1]:.0f} / {100 * g['within'][1]:.0f} %")
+                 for name, label in (("0", "bare"), ("conduction", "bare, conduction range"), ("30", "30 um"), ("60", "60 um"))
+                 for g in [found["groups"][name]]])
+    named = by_name()
+    against = table(("quantity", "more from less", "than from", "ratio", "any monotone function misses one by"),
+                    [(k, *(f"{t.power:.0f} W, {t.speed * 1e3:.0f} mm/s ({t.batch}): {um(getattr(t, k))} um"
+                           for t in (named[a], named[b])), f"{math.exp(r):.2f}", f"{100 * r / 2:.0f} %")
+                     for k in ("depth", "width") for a, b, r in found["against_monotony"][k][:3]])
+    floors = table(("tracks", "n", "width: power law, log-quadratic, Gaussian process", "depth"),
+                   [(label, f["n"], *(", ".join(f"{100 * f[k][m]:.0f}" for m in ("power law", "log-quadratic",
+                                                                                 "Gaussian process")) + " %"
+                                      for k in ("width", "depth")))
+                    for name, label in (("0", "bare"), ("conduction", "bare, conduction range"),
+                                        ("conduction, fine", "that, batch fine"), ("conduction, coarse", "that, batch coarse"),
+                                        ("30", "30 um"), ("60", "60 um")) for f in [found["floor"][name]]])
+    members = sorted((named[m] for m in found["groups"]["0"]["members"]), key=lambda t: (t.speed, t.power))
+    listed = ", ".join(f"{t.power:.0f} W at {t.speed * 1e3:.0f}" for t in members)
+    return f"""187 tracks: 64 on bare plate, 62 and 61 on 30 and 60 um; balling apart everywhere below.
+
+**Two batches.** Some rows give lengths to 0.001 um ("fine"), the others to 0.1 um ("coarse"); these are two series of
+measurement. Every setting that was made twice was made once in each, so what looks like scatter of repeated tracks is a
+step from one batch to the other, and no repeat within a batch exists. ± is half the 95 % interval.
+
+{step}
+On bare plate the batches agree; on powder the fine batch is half as deep. What stands above the plate's surface (molten
+area less 0.72 width x depth, over the width) is {bead_words()}: the fine batch's 30 um layers were about as thick as the
+60 um ones. So focus and power do not differ between the batches, the layer does. Read as scatter of one track, with the
+chi-square interval of so few pairs:
+
+{scatter}
+**Two groups.** One log-quadratic function of power and speed, for ln width and ln depth, against two a constant apart
+(mixture of Gaussians, one covariance; bootstrap: {400} samples of the single function).
+
+{two}
+On bare plate the second group is {listed} mm/s. It has nothing to do with the batch (Fisher's exact test
+p = {found["groups"]["0"]["batch_p"]:.2f}). Without any fit:
+
+{against}
+More light on slower scans left a pool half as deep: no function that grows with power and falls with speed, a smooth one
+or not, gives both tracks. These settings lie about the keyhole threshold, where a track may run with a keyhole or without;
+inside the conduction range the test finds no second group.
+
+![groups](melt-tracks/groups.png)
+
+**The floor.** Relative rms error at a track that was left out of a free fit in power and speed:
+
+{floors}
+"""
+
+
+def bead_words():
+    """Solid thickness above the plate by batch and layer, from the area that a section has beyond its depth."""
+    words = []
+    for surface in (30e-6, 60e-6):
+        for batch in ("coarse", "fine"):
+            values = [(t.area - 0.72 * t.width * t.depth) / t.width for t in groups.of(surface) if t.batch == batch]
+            words.append(f"{um(float(np.median(values)), 0)} um ({surface * 1e6:.0f} um, {batch})")
+    return ", ".join(words)
+
+
+def words_of_trapp(found, folder):
+    sizes, names = found["cells"], [m[0] for m in found["measured"]]
+    fine, coarse = sizes["2.5"], sizes["5"]
+    base = sizes["3.75"]
+    rows = []
+    for k, (name, w, d, a) in enumerate(found["measured"]):
+        spot = [max(abs(found["variants"][f"spot {s} um"][k][n] - base[k][n]) for s in (55, 65)) for n in (0, 1)]
+        own = [math.hypot(3e-6, s) for s in spot]
+        rows.append((name, f"{a:.3f}", *(cell for n, told in ((0, w), (1, d)) for cell in
+                     (f"{um(told, 0)} ± {um(own[n])}", f"{um(fine[k][n])} ± {um(abs(fine[k][n] - coarse[k][n]) / 3)}",
+                      off(fine[k][n], told), "yes" if abs(fine[k][n] - told) <= own[n] else "no"))))
+    main = table(("track", "A", "width measured", "computed", "off", "within its uncertainty", "depth measured", "computed",
+                  "off", "within"), rows)
+    variants = table(("change (cells of 3.75 um)", *(f"{name}: width, depth [um]" for name in names), "off, width", "off, depth"),
+                     [(label, *(f"{um(p[0])}, {um(p[1])}" for p in pools),
+                       *(", ".join(off(p[n], m[1 + n]) for p, m in zip(pools, found["measured"])) for n in (0, 1)))
+                      for label, pools in [("none", base), *found["variants"].items()]])
+    write_csv(folder / "trapp.csv", ("model", "track", "width [m]", "depth [m]"),
+              [(label, name, *p[:2]) for label, pools in [(f"cell {c} um", v) for c, v in sizes.items()]
+               + list(found["variants"].items()) for name, p in zip(names, pools)])
+    return f"""Nothing fitted. Latent heat, k(T), evaporation, radiation and convection; the measured absorptivity in. Measured: ± digitisation
+(3 um) and what ± 5 um of spot do here; computed: cells of 2.5 um, ± a third of the difference to 5 um (order 2).
+
+{main}
+Peak temperatures {", ".join(f"{t:.0f}" for t in found["peak"])} K; the vapour takes
+{", ".join(f"{100 * v:.0f}" for v in found["vapour"])} % of the absorbed heat. A calorimeter sees what stays in the disc:
+"absorptivity net of vapour" absorbs {", ".join(f"{a:.3f}" for a in found["net absorptivity"])}, so that what stays is what was measured.
+
+{variants}
+{found.get("words", "")}"""
+
+
+def model_rows(models, order):
+    rows = []
+    for name in order:
+        m = models[name]
+        rows.append((name, f"{m['absorptivity']:.2f}", f"{100 * m['width rms']:.0f} %", f"{100 * m['depth rms']:.0f} %",
+                     f"{100 * m['rms']:.0f} %"))
+    return rows
+
+
+def words_of_ammt(found, folder):
+    names = [m[0] for m in found["measured"]]
+    models = {**found["models"], **{f"conduction, spot {s} um": m for s, m in found["spot"].items()}}
+
+    def wanted(m, key):
+        return ", ".join("-" if math.isnan(a) else f"{a:.2f}" for a in m[key])
+
+    rows = [(*row, ", ".join(f"{percent(e[0])} / {percent(e[1])}" for e in models[row[0]]["errors"]),
+             wanted(models[row[0]], "wanted by width"), wanted(models[row[0]], "wanted by depth"))
+            for row in model_rows(models, models)]
+    main = table(("model", "A, best for all", "rms width", "rms depth", "both", f"{', '.join(names)}: width / depth",
+                  "A wanted by widths", "by depths"), rows)
+    final = table(("true runs", "A", "case", "width measured", "computed", "depth measured", "computed", "at the solidus",
+                   "length (1290 C: 20, 100 us)"),
+                  [(name, f"{f['absorptivity']:.3f}", m[0], f"{um(m[1])} ± {um(m[2])}", finest(f, k, 0),
+                    f"{um(m[3])} ± {um(m[4])}", finest(f, k, 1), f"{um(f['solidus'][k][0])}, {um(f['solidus'][k][1])}",
+                    f"{um(f['solidus'][k][2], 0)} ({', '.join(um(v, 0) for v in found['length'][m[0]].values())})")
+                   for name, f in found["final"].items() for k, m in enumerate(found["measured"])])
+    write_csv(folder / "ammt.csv", ("model", "absorptivity", "case", "ln(width/measured)", "ln(depth/measured)"),
+              [(name, m["absorptivity"], case, *e) for name, m in models.items() for case, e in zip(names, m["errors"])])
+    return f"""Means over the cross sections of 4, 4 and 5 tracks, ± the standard error between tracks. "Mixed x f": the melt conducts f
+times as well in every direction, one number for its flow. Surrogate: runs at cells of 8 um, straight in logarithms.
+
+{main}
+{final}
+"""
+
+
+def finest(final, k, n):
+    """Pool of the finer cells, ± what the two grids leave open (order 2)."""
+    (c1, coarse), (c2, fine) = sorted(((float(c), p) for c, p in final["pools"].items()), reverse=True)
+    return f"{um(fine[k][n])} ± {um(abs(fine[k][n] - coarse[k][n]) / ((c1 / c2)**2 - 1))}"
+
+
+def words_of_hofmann(found, folder, statistics):
+    models = found["models"]
+    rows = [(*row, f"{percent(m['mean'][0])}, {percent(m['mean'][1])}",
+             f"{100 * m['scatter'][0]:.0f} %, {100 * m['scatter'][1]:.0f} %",
+             "; ".join(f"{percent(m['by batch'][b][0])}, {percent(m['by batch'][b][1])}" for b in ("fine", "coarse")))
+            for row in model_rows(models, models) for m in [models[row[0]]]]
+    main = table(("model", "A, best", "rms width", "rms depth", "both", "mean off: width, depth", "scatter about it",
+                  "mean off by batch: fine; coarse"), rows)
+    told = statistics["sensitivities"]["conduction"]
+    slopes = table(("d ln / d ln", "width, power", "width, speed", "depth, power", "depth, speed"),
+                   [("measured", *(pm(*told[k][x]) for k in ("width", "depth") for x in ("power", "speed"))),
+                    *((name, *(f"{m['sensitivities'][k][x][0]:.2f}" for k in ("width", "depth") for x in ("power", "speed")))
+                      for name, m in models.items() if m["sensitivities"])])
+    best = found["best"]
+    series = []
+    for name, colour, marker in (("conduction", plots.BLUE, "o"), (best, plots.RED, "^")):
+        m = models[name]
+        points = [[(t[3 + n] * 1e6, 0, t[3 + n] * 1e6 * math.exp(e[n]), 0) for t, e in zip(found["tracks"], m["errors"])]
+                  for n in (0, 1)]
+        series.append((f"{name}, A = {m['absorptivity']:.2f}", colour, marker, points))
+    plots.parity(folder / "hofmann.png", series)
+    plots.residuals(folder / "hofmann_power.png", found["tracks"],
+                    {name: models[name]["errors"] for name in ("conduction", best)})
+    write_csv(folder / "hofmann.csv", ("model", "absorptivity", "track", "ln(width/measured)", "ln(depth/measured)"),
+              [(name, m["absorptivity"], t[0], *e) for name, m in models.items() for t, e in zip(found["tracks"], m["errors"])])
+    fine = {name: [max(abs(math.log(a[n] / b[n])) for a, b in zip(*f.values())) / ((6.5 / 4.5)**2 - 1) for n in (0, 1)]
+            for name, f in found["final"].items()}
+    return f"""{len(found["tracks"])} tracks whose normalised enthalpy A P / (rho h_s sqrt(pi a v s^3)) with s = 40 um, the 1/e2 radius, and A = 0.30 is
+below 9.2 (King et al. 2014: keyhole from 30 ± 4 with s = sigma, 10.6 ± 1.4 here): chosen by power and speed alone; none of
+them balled. Errors of true runs in cells of 6.5 um (discretisation, from 4.5 um on every fourth track: at most
+{100 * fine["conduction"][0]:.0f} % in width, {100 * fine["conduction"][1]:.0f} % in depth).
+
+{main}
+{slopes}
+![parity](melt-tracks/hofmann.png)
+![against power](melt-tracks/hofmann_power.png)
+"""
+
+
+def words_of_keyhole(found, folder):
+    rows = [(f"{t['power']:.0f}", f"{t['measured'][2]:.3f}", "-" if t["absorptivity"] is None else f"{t['absorptivity']:.3f}",
+             um(t["measured"][0], 0), um(t["width"]), off(t["width"], t["measured"][0]), um(t["measured"][1], 0),
+             um(t["depth"]), off(t["depth"], t["measured"][1]), t["regime"] or "stopped") for t in found["tracks"]]
+    plots.absorptivity(folder / "absorptivity.png", found["tracks"])
+    write_csv(folder / "keyhole.csv", ("power [W]", "absorptivity", "width [m]", "depth [m]"),
+              [(t["power"], t["absorptivity"], t["width"], t["depth"]) for t in found["tracks"]])
+    return table(("P [W]", "A measured", "computed", "width measured [um]", "computed", "off", "depth measured [um]",
+                  "computed", "off", "regime"), rows) + "\n![absorptivity](melt-tracks/absorptivity.png)\n"
+
+
+def words_of_powder(found, folder):
+    rows, inside = [], {True: [0, 0, 0], False: [0, 0, 0]}
+    for t in found["tracks"]:
+        sizes = np.array(t["sizes"], float)
+        cells = []
+        for n in (0, 1):
+            good = sizes[np.isfinite(sizes[:, n]), n]
+            mean, half = powder_tracks.interval(good) if len(good) > 2 else (math.nan, math.nan)
+            cells.append((mean, half))
+        for w, d, balling, batch in t["measured"]:
+            hits = [abs(told - mean) <= half for told, (mean, half) in zip((w, d), cells)]
+            inside[balling] = [inside[balling][0] + 1, inside[balling][1] + hits[0], inside[balling][2] + hits[1]]
+            rows.append((f"{t['powder'] * 1e6:.0f}", f"{t['power']:.0f}", f"{t['speed'] * 1e3:.0f}", batch,
+                         "yes" if balling else "", um(w), f"{um(cells[0][0])} ± {um(cells[0][1])}", "in" if hits[0] else "out",
+                         um(d), f"{um(cells[1][0])} ± {um(cells[1][1])}", "in" if hits[1] else "out",
+                         f"{np.mean(t['absorptivity']):.2f}"))
+    write_csv(folder / "powder.csv", ("powder [m]", "power [W]", "speed [m/s]", "seed", "width [m]", "depth [m]", "absorptivity"),
+              [(t["powder"], t["power"], t["speed"], k + 1, *s, t["absorptivity"][k]) for t in found["tracks"]
+               for k, s in enumerate(t["sizes"])])
+    s = found["scatter"]
+    return (table(("powder [um]", "P [W]", "v [mm/s]", "batch", "balling", "width measured", "computed ± 95 %", "", "depth measured",
+                   "computed ± 95 %", "", "A"), rows)
+            + f"\nInside the 95 % interval for one more bed: {inside[False][1]} widths and {inside[False][2]} depths of "
+            + f"{inside[False][0]} tracks; of {inside[True][0]} that balled {inside[True][1]} and {inside[True][2]}.\n"
+            + f"Scatter from bed to bed: width {100 * s['width'][0]:.0f} % (95 %: {100 * s['width'][1]:.0f} to "
+            + f"{100 * s['width'][2]:.0f} %), depth {100 * s['depth'][0]:.0f} % ({100 * s['depth'][1]:.0f} to {100 * s['depth'][2]:.0f} %).\n")
+
+
+def write(found, docs):
+    folder = docs / "melt-tracks"
+    folder.mkdir(parents=True, exist_ok=True)
+    parts = {"groups": words_of_groups, "trapp": words_of_trapp, "ammt": words_of_ammt, "keyhole": words_of_keyhole,
+             "powder": words_of_powder}
+    words = {name: part(found[name], folder) if name in found else NOT_RUN for name, part in parts.items()}
+    words["hofmann"] = (words_of_hofmann(found["hofmann"], folder, found["groups"])
+                        if "hofmann" in found and "groups" in found else NOT_RUN)
+    words["short"] = (HERE / "short.md").read_text().strip()
+    text = (HERE / "page.md").read_text()
+    for name, value in words.items():
+        text = text.replace("{" + name + "}", value.strip())
+    (docs / "melt-tracks.md").write_text(text)
