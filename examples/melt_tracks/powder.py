@@ -9,7 +9,8 @@ from measured import conduction_range, hofmann
 from plate import CASE, case, mixing, size
 
 SEEDS = range(1, 6)
-CELL = 5e-6
+CELL = 7e-6
+PLATE_BEGINS = 760e-6  # accumulation zone and gap of bed.toml [m]
 FACTOR = 2  # of the mixing of the melt, as on the bare plate
 LIGHT = {"optics.refractive_index": INDEX, "optics.position_spacing": 2 * CELL, "optics.rays": 4000}
 
@@ -17,27 +18,36 @@ LIGHT = {"optics.refractive_index": INDEX, "optics.position_spacing": 2 * CELL, 
 def settings(track):
     file, chosen = case(track, 0.45, CELL, {**mixing(FACTOR), **LIGHT})
     del chosen["laser.absorptivity"]
-    chosen["scan.track_length"] = 480e-6
+    chosen.update({"scan.track_length": 420e-6, "heat.size": [0.63e-3, 0.28e-3, 0.16e-3]})
     return file, chosen
 
 
 def sample():
-    """Settings of the conduction range by their inputs, balling or not: {(powder, power, speed): tracks}."""
+    """Settings of the conduction range by their inputs that were made in both batches, balling or not: {(powder, power,
+    speed): tracks}. The others cost as much and say less: no repeat."""
     found = collections.defaultdict(list)
     for t in hofmann():
         if t.powder > 0 and conduction_range(t):
             found[t.powder, t.power, t.speed].append(t)
-    return found
+    return {key: tracks for key, tracks in found.items() if len(tracks) > 1}
 
 
 def beds(melt):
-    """{thickness: files of the beds}, spread as bed.toml says."""
+    """{thickness: files of the beds}, spread as bed.toml says; what lies on the plate, without the feed."""
     found = {}
     for thickness in (30e-6, 60e-6):
         folders = melt.spread([("bed.toml", {"machine.layer_thickness": thickness}, ["--seed", str(s), "--export", "csv"])
                                for s in SEEDS])
-        found[thickness] = [folder / "bed_0001.csv" for folder in folders]
+        found[thickness] = [on_plate(folder / "bed_0001.csv") for folder in folders]
     return found
+
+
+def on_plate(bed):
+    lines = bed.read_text().splitlines()
+    kept = [line for line in lines[2:] if float(line.split(",")[0]) > PLATE_BEGINS]
+    file = bed.with_name("on_plate.csv")
+    file.write_text("\n".join([*lines[:2], *kept]) + "\n")
+    return file
 
 
 def study(melt):

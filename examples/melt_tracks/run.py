@@ -12,7 +12,7 @@ HERE = pathlib.Path(__file__).parent
 
 class Melt:
     def __init__(self, program, out, jobs, accept_older):
-        self.program, self.out, self.jobs, self.accept_older = program.resolve(), out, jobs, accept_older
+        self.program, self.out, self.jobs, self.accept_older = program.resolve(), out.resolve(), jobs, accept_older
         self.build = hashlib.sha256(self.program.read_bytes()).hexdigest()
         out.mkdir(parents=True, exist_ok=True)
 
@@ -58,7 +58,7 @@ class Melt:
     def start(self, verb, case, settings, arguments, folder):
         sets = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
         return subprocess.run([self.program, verb, HERE / case, *arguments, *sets, "-o", folder, "--quiet", "--threads", "1"],
-                              capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+                              capture_output=True, text=True, cwd=self.out, env={**os.environ, "OMP_NUM_THREADS": "1"})
 
 
 def file_or_word(argument):
