@@ -70,15 +70,17 @@ def residuals(path, tracks, errors):
     save(figure, path)
 
 
-def absorptivity(path, tracks):
+def absorptivity(path, tracks, mixed):
     """Absorptivity and depth against power beside the calorimetry and the sections."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.6))
     power = [t["power"] for t in tracks]
     left.plot(power, [t["measured"][2] for t in tracks], "o", color=GREY, label="Trapp et al. 2017")
-    left.plot(power, [t["absorptivity"] or np.nan for t in tracks], "^-", color=RED, label="here")
-    left.set(xlabel="power [W]", ylabel="absorptivity", ylim=(0, 1))
-    left.legend()
     right.errorbar(power, [t["measured"][1] * 1e6 for t in tracks], yerr=3, fmt="o", color=GREY, lw=0.8)
-    right.plot(power, [t["depth"] * 1e6 for t in tracks], "^-", color=RED)
+    for (label, rows), colour in zip([("keyhole", tracks), *((f"keyhole, melt mixed x {f}", r) for f, r in mixed.items())],
+                                     (RED, ORANGE, BLUE)):
+        left.plot(power, [t["absorptivity"] or np.nan for t in rows], "^-", color=colour, ms=4, lw=1, label=label)
+        right.plot(power, [t["depth"] * 1e6 for t in rows], "^-", color=colour, ms=4, lw=1)
+    left.set(xlabel="power [W]", ylabel="absorptivity", ylim=(0, 1))
+    left.legend(fontsize=7)
     right.set(xlabel="power [W]", ylabel="depth [um]")
     save(figure, path)

@@ -4,32 +4,31 @@ import collections
 import numpy as np
 from scipy.stats import chi2, t as student
 
-from keyhole import INDEX
+from keyhole import FACTOR, INDEX
 from measured import conduction_range, hofmann
 from plate import CASE, case, mixing, size
 
 SEEDS = range(1, 6)
 CELL = 7e-6
 PLATE_BEGINS = 760e-6  # accumulation zone and gap of bed.toml [m]
-FACTOR = 2  # of the mixing of the melt, as on the bare plate
 LIGHT = {"optics.refractive_index": INDEX, "optics.position_spacing": 2 * CELL, "optics.rays": 4000}
+MODELS = {f"melt mixed x {FACTOR}": mixing(FACTOR)}
 
 
-def settings(track):
-    file, chosen = case(track, 0.45, CELL, {**mixing(FACTOR), **LIGHT})
+def settings(track, more):
+    file, chosen = case(track, 0.45, CELL, {**more, **LIGHT})
     del chosen["laser.absorptivity"]
     chosen.update({"scan.track_length": 420e-6, "heat.size": [0.63e-3, 0.28e-3, 0.16e-3]})
     return file, chosen
 
 
 def sample():
-    """Settings of the conduction range by their inputs that were made in both batches, balling or not: {(powder, power,
-    speed): tracks}. The others cost as much and say less: no repeat."""
+    """Settings of the conduction range by their inputs, balling or not: {(powder, power, speed): tracks}."""
     found = collections.defaultdict(list)
     for t in hofmann():
         if t.powder > 0 and conduction_range(t):
             found[t.powder, t.power, t.speed].append(t)
-    return {key: tracks for key, tracks in found.items() if len(tracks) > 1}
+    return found
 
 
 def beds(melt):
@@ -51,17 +50,19 @@ def on_plate(bed):
 
 
 def study(melt):
-    lying = beds(melt)
-    cases = [(key, seed) for key in sorted(sample()) for seed in range(len(SEEDS))]
-    tracks = sample()
-    summaries = dict(zip(cases, melt([(*settings(tracks[key][0]), ("--bed", str(lying[key[0]][seed])))
-                                      for key, seed in cases])))
+    lying, tracks = beds(melt), sample()
+    return {name: judge(melt, lying, tracks, more) for name, more in MODELS.items()}
+
+
+def judge(melt, lying, tracks, more):
+    runs = [(key, seed) for key in sorted(tracks) for seed in range(len(SEEDS))]
+    summaries = dict(zip(runs, melt([(*settings(tracks[key][0], more), ("--bed", str(lying[key[0]][seed])))
+                                     for key, seed in runs])))
     found = []
     for key in sorted(tracks):
-        runs = [summaries[key, seed] for seed in range(len(SEEDS))]
-        sizes = np.array([size(s)[:2] for s in runs])
-        found.append({"powder": key[0], "power": key[1], "speed": key[2], "sizes": sizes.tolist(),
-                      "regimes": [s["regime"] for s in runs], "absorptivity": [s["absorptivity"] for s in runs],
+        of_beds = [summaries[key, seed] for seed in range(len(SEEDS))]
+        found.append({"powder": key[0], "power": key[1], "speed": key[2], "sizes": [size(s)[:2] for s in of_beds],
+                      "regimes": [s["regime"] for s in of_beds if s], "absorptivity": [s["absorptivity"] for s in of_beds if s],
                       "measured": [(t.width, t.depth, t.balling, t.batch) for t in tracks[key]]})
     return {"tracks": found, "scatter": {k: scatter(found, n) for n, k in enumerate(("width", "depth"))}}
 

@@ -18,18 +18,20 @@ class Melt:
 
     def __call__(self, cases):
         """[(case file, settings, further arguments), ...] side by side; their summaries, None where a run stopped."""
-        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            return list(pool.map(lambda case: self.one(*case), cases))
-
-    def one(self, case, settings, arguments=()):
-        return json.loads((self.done("melt", case, settings, arguments) / "summary.json").read_text())
+        return [json.loads((folder / "summary.json").read_text()) for folder in self.side_by_side("melt", cases)]
 
     def spread(self, cases):
         """The same of `layerloop spread`; the folders."""
-        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            return list(pool.map(lambda case: self.done("spread", *case), cases))
+        return self.side_by_side("spread", cases)
 
-    def done(self, verb, case, settings, arguments):
+    def side_by_side(self, verb, cases):
+        """The folders of the cases; those that are the same run once."""
+        wanted = [(self.folder(verb, *case), case) for case in cases]
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            list(pool.map(lambda case: self.done(verb, *case), dict(wanted).values()))
+        return [folder for folder, _ in wanted]
+
+    def done(self, verb, case, settings, arguments=()):
         """The folder of a run that is there now."""
         folder = self.folder(verb, case, settings, arguments)
         if self.fresh(folder):
@@ -47,7 +49,7 @@ class Melt:
         (folder / "build.txt").write_text(self.build)
         return folder
 
-    def folder(self, verb, case, settings, arguments):
+    def folder(self, verb, case, settings, arguments=()):
         told = json.dumps([verb, (HERE / case).read_text(), sorted(settings.items()), [file_or_word(a) for a in arguments]])
         return self.out / hashlib.sha256(told.encode()).hexdigest()[:16]
 
