@@ -51,23 +51,49 @@ def by_name():
 
 def words_of_groups(found, folder):
     tracks = groups.of(0.0)
-    values = groups.shapes(tracks)
-    columns = groups.basis(tracks, 2)
+    values, columns = groups.shapes(tracks), groups.basis(tracks, 2)
     pairs = {f"{s * 1e6:.0f}": groups.repeats(s) for s in groups.SURFACES}
     plots.groups(folder / "groups.png", tracks, values - columns @ groups.fit(columns, values),
                  set(found["groups"]["0"]["members"]), pairs)
+    return f"""187 tracks: 64 on bare plate, 62 and 61 on 30 and 60 um; balling apart everywhere below.
+
+{words_of_batches(found)}
+{words_of_two(found)}
+![groups](melt-tracks/groups.png)
+
+**The floor.** Relative rms error at a track that was left out of a free fit in power and speed:
+
+{floor_table(found)}
+"""
+
+
+def words_of_batches(found):
+    def ratio(step):  # of a mean logarithm and half its interval
+        return pm(math.exp(step[0]), math.exp(step[0]) * step[1])
+
     step = table(("powder [um]", "pairs", "width fine / coarse", "depth", "area", "depth, beside a smooth fit of all tracks"),
-                 [(name, len(found["repeats"][name]),
-                   *(pm(math.exp(found["batch_step"][name][k][0]), math.exp(found["batch_step"][name][k][0])
-                        * found["batch_step"][name][k][1]) for k in ("width", "depth", "area")),
-                   pm(math.exp(found["batch_in_fit"][name]["depth"][0]),
-                      math.exp(found["batch_in_fit"][name]["depth"][0]) * found["batch_in_fit"][name]["depth"][1]))
-                  for name in ("0", "30", "60")])
+                 [(name, len(found["repeats"][name]), *(ratio(found["batch_step"][name][k]) for k in ("width", "depth", "area")),
+                   ratio(found["batch_in_fit"][name]["depth"])) for name in ("0", "30", "60")])
+    one = {name: [found["batch_step"][name][k] for k in ("width", "depth")] for name in ("0", "30", "60")}
     scatter = table(("powder [um]", "one track, width", "95 %", "depth", "95 %"),
-                    [(name, *(cell for k in ("width", "depth") for cell in
-                              (f"{100 * found['batch_step'][name][k][2]:.0f} %",
-                               f"{100 * found['batch_step'][name][k][3][0]:.0f} to {100 * found['batch_step'][name][k][3][1]:.0f} %")))
-                     for name in ("0", "30", "60")])
+                    [(name, *(cell for s in both for cell in
+                              (f"{100 * s[2]:.0f} %", f"{100 * s[3][0]:.0f} to {100 * s[3][1]:.0f} %")))
+                     for name, both in one.items()])
+    return f"""**Two batches.** Some rows give lengths to 0.001 um ("fine"), the others to 0.1 um ("coarse"); hardly one series
+of measurement. Every setting that was made twice was made once in each, so what looks like scatter of repeated tracks holds a
+step from one batch to the other, and there is no repeat within a batch. ± is half the 95 % interval.
+
+{step}
+On bare plate the batches agree; on powder the fine batch is some 0.6 times as deep. What stands above the plate's surface (molten
+area less 0.72 width x depth, over the width) is {bead_words()}:
+the fine batch's 30 um layers gave as much metal as 60 um ones. So the beam hardly differs between the batches; the layer,
+or how its depth was taken, does. Read as scatter of one track, with the chi-square interval of so few pairs:
+
+{scatter}
+"""
+
+
+def words_of_two(found):
     two = table(("tracks", "n", "2 ln(likelihood ratio)", "gain in BIC", "p (bootstrap)", "second group: share, width, depth",
                  "depth scatter one / two groups"),
                 [(label, g["n"], f"{g['ratio']:.1f}", f"{g['bic']:.1f}", f"{g['p']:.3f}",
@@ -80,29 +106,9 @@ def words_of_groups(found, folder):
                     [(k, *(f"{t.power:.0f} W, {t.speed * 1e3:.0f} mm/s ({t.batch}): {um(getattr(t, k))} um"
                            for t in (named[a], named[b])), f"{math.exp(r):.2f}", f"{100 * r / 2:.0f} %")
                      for k in ("depth", "width") for a, b, r in found["against_monotony"][k][:3]])
-    floors = table(("tracks", "n", "width: power law, log-quadratic, Gaussian process", "depth"),
-                   [(label, f["n"], *(", ".join(f"{100 * f[k][m]:.0f}" for m in ("power law", "log-quadratic",
-                                                                                 "Gaussian process")) + " %"
-                                      for k in ("width", "depth")))
-                    for name, label in (("0", "bare"), ("conduction", "bare, conduction range"),
-                                        ("conduction, fine", "that, batch fine"), ("conduction, coarse", "that, batch coarse"),
-                                        ("30", "30 um"), ("60", "60 um")) for f in [found["floor"][name]]])
     members = sorted((named[m] for m in found["groups"]["0"]["members"]), key=lambda t: (t.speed, t.power))
     listed = ", ".join(f"{t.power:.0f} W at {t.speed * 1e3:.0f}" for t in members)
-    return f"""187 tracks: 64 on bare plate, 62 and 61 on 30 and 60 um; balling apart everywhere below.
-
-**Two batches.** Some rows give lengths to 0.001 um ("fine"), the others to 0.1 um ("coarse"); hardly one series
-of measurement. Every setting that was made twice was made once in each, so what looks like scatter of repeated tracks holds a
-step from one batch to the other, and there is no repeat within a batch. ± is half the 95 % interval.
-
-{step}
-On bare plate the batches agree; on powder the fine batch is some 0.6 times as deep. What stands above the plate's surface (molten
-area less 0.72 width x depth, over the width) is {bead_words()}:
-the fine batch's 30 um layers gave as much metal as 60 um ones. So the beam hardly differs between the batches; the layer,
-or how its depth was taken, does. Read as scatter of one track, with the chi-square interval of so few pairs:
-
-{scatter}
-**Two groups.** One log-quadratic function of power and speed, for ln width and ln depth, against two a constant apart
+    return f"""**Two groups.** One log-quadratic function of power and speed, for ln width and ln depth, against two a constant apart
 (mixture of Gaussians, one covariance; bootstrap of 400 samples of the single function).
 
 {two}
@@ -113,13 +119,17 @@ p = {found["groups"]["0"]["batch_p"]:.2f}). Without any fit:
 More light on slower scans left a pool half as deep: no function that grows with power and falls with speed, a smooth one
 or not, gives both tracks. These settings lie about the keyhole threshold, where a track may run with a keyhole or without;
 inside the conduction range the test finds no second group.
-
-![groups](melt-tracks/groups.png)
-
-**The floor.** Relative rms error at a track that was left out of a free fit in power and speed:
-
-{floors}
 """
+
+
+def floor_table(found):
+    return table(("tracks", "n", "width: power law, log-quadratic, Gaussian process", "depth"),
+                 [(label, f["n"], *(", ".join(f"{100 * f[k][m]:.0f}" for m in ("power law", "log-quadratic",
+                                                                                 "Gaussian process")) + " %"
+                                      for k in ("width", "depth")))
+                    for name, label in (("0", "bare"), ("conduction", "bare, conduction range"),
+                                        ("conduction, fine", "that, batch fine"), ("conduction, coarse", "that, batch coarse"),
+                                        ("30", "30 um"), ("60", "60 um")) for f in [found["floor"][name]]])
 
 
 def bead_words():
@@ -185,8 +195,8 @@ def words_of_ammt(found, folder):
             for row in model_rows(models, models)]
     main = table(("model", "A, best for all", "rms width", "rms depth", "both", f"{', '.join(names)}: width / depth",
                   "A wanted by widths", "by depths"), rows)
-    final = table(("true runs", "A", "case", "width measured", "computed", "depth measured", "computed", "at the solidus",
-                   "length (1290 C: 20, 100 us)"),
+    final = table(("true runs", "A", "case", "width measured [um]", "computed", "depth measured [um]", "computed",
+                   "at the solidus: width, depth", "length at 1290 C [um] (camera 20, 100 us)"),
                   [(name, f"{f['absorptivity']:.3f}", m[0], f"{um(m[1])} ± {um(m[2])}", finest(f, k, 0),
                     f"{um(m[3])} ± {um(m[4])}", finest(f, k, 1), f"{um(f['solidus'][k][0])}, {um(f['solidus'][k][1])}",
                     f"{um(f['solidus'][k][2], 0)} ({', '.join(um(v, 0) for v in found['length'][m[0]].values())})")
@@ -294,8 +304,8 @@ def words_of_powder(found, folder):
     told = "\n".join(lines)
     head = ("powder [um]", "P [W]", "v [mm/s]", "batch", "balling", "width measured [um]", *found, "depth measured [um]",
             *found, "A")
-    return f"""Beds of five seeds, spread by DEM as `bed.toml` says (sizes assumed, 20 to 44 um; the lip lets a median grain pass: some 10 and
-23 um of solid on the plate); absorptivity from the tracer, index as for the keyhole, which is off; cells of
+    return f"""Beds of five seeds, spread by DEM as `bed.toml` says (sizes assumed, 20 to 44 um; the lip lets a median grain pass, a
+clearance that was chosen with the measured beads in view: some 10 and 23 um of solid on the plate); absorptivity from the tracer, index as for the keyhole, which is off; cells of
 {powder_tracks.CELL * 1e6:.0f} um. Sample: all settings of the conduction range, by their inputs. Computed: mean over the beds ± half the 95 %
 interval for one more bed.
 
@@ -329,7 +339,7 @@ def in_short(found):
                          f"A = {m['absorptivity']:.2f}"))
     if "hofmann" in found and "groups" in found:
         floors = found["groups"]["floor"]["conduction"]
-        for name in ("conduction", found["hofmann"]["best"]):
+        for name in ("conduction", found["hofmann"]["best"], "melt mixed x 2, spot 100 um"):
             m = found["hofmann"]["models"][name]
             rows.append((f"Hofmann bare, conduction range, {name}",
                          f"free power law in P and v, a track left out: {100 * floors['width']['power law']:.0f} %, "
