@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Core-seconds per millimetre of track against the error of the pool that the cells make: `layerloop bench heat --tracks`
-over cell sizes, as a table. The reference is Richardson's, from the two finest grids at second order."""
+over cell sizes, as a table and a picture. The reference is Richardson's, from the two finest grids at second order."""
 import argparse
 import csv
 import json
@@ -36,6 +36,29 @@ def main():
             for (cell, r), cost, error in zip(runs, costs, errors):
                 table.writerow([metal, cell, f"{cost:.4g}", r["sweeps"], f"{1e6 * r['width']:.3f}",
                                 f"{1e6 * r['depth']:.3f}", f"{1e6 * r['length']:.2f}", f"{error:.3f}"])
+    draw(options.o)
+
+
+def draw(folder):
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    rows = list(csv.DictReader(open(folder / "cost.csv")))
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.6))
+    for metal, colour in (("316L", "#1f6fb2"), ("AlSi10Mg", "#d08a00")):
+        of = [r for r in rows if r["metal"] == metal]
+        cost = [float(r["cost [core-s/mm]"]) for r in of]
+        left.loglog([abs(float(r["error of depth [%]"])) for r in of], cost, "o-", color=colour, label=metal)
+        right.loglog([float(r["cell [um]"]) for r in of], cost, "o-", color=colour, label=metal)
+        for r, c in zip(of, cost):
+            left.annotate(r["cell [um]"], (abs(float(r["error of depth [%]"])), c), fontsize=7)
+    left.set_xlabel("error of depth [%] (points: cell in um)")
+    right.set_xlabel("cell [um]")
+    for axes in (left, right):
+        axes.set_ylabel("core-seconds per mm of track")
+        axes.legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(folder / "cost.png", dpi=100)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/units.hpp"
+
 namespace layerloop {
+
+double HeatSettings::isotherm(Material const& metal) const {
+  if (pool_isotherm == "liquidus") return metal.liquidus;
+  if (pool_isotherm == "solidus") return metal.solidus;
+  return parse_quantity(pool_isotherm, Dimension::temperature);
+}
 
 double LaserSettings::widening() const {
   double const ratio = rayleigh_length ? focus_offset / *rayleigh_length : 0.0;

@@ -184,7 +184,10 @@ struct HeatSettings {
   double powder_contact_conductivity = 0;  ///< across faces between different grains [W/(m K)]: gas and point contacts
   Gas gas = Gas::argon;
   double gas_pressure = 101325;  ///< [Pa]
-  std::string pool_isotherm;               ///< "liquidus" or "solidus"
+  std::string pool_isotherm = "liquidus";  ///< "liquidus", "solidus" or a temperature as one would write it
+
+  /// `pool_isotherm` [K]. \throws InputError  it is none of these
+  double isotherm(Material const& metal) const;
 };
 
 struct RunSettings {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/error.hpp"
 #include "core/grain_size.hpp"
 #include "core/rayleigh_time.hpp"
 #include "core/units.hpp"
@@ -39,6 +40,7 @@ class CaseChecks {
     material();
     calibrate();
     if (c_.has_light()) light();
+    if (c_.has_laser()) isotherm();
     if (c_.process == Process::exposing) plate();
     if (!c_.has_machine()) return;
     feed();
@@ -299,6 +301,22 @@ class CaseChecks {
              "= {} (must be below the solidus, {}, or all is molten before the laser comes)",
              kelvin(c_.heat.ambient_temperature), kelvin(metal.solidus));
     }
+  }
+
+  void isotherm() const {
+    std::string const& told = c_.heat.pool_isotherm;
+    if (!known({"heat.pool_isotherm", "heat.ambient_temperature", "material.boiling_point"})) return;
+    if (told == "liquidus" || told == "solidus") return;
+    double T = 0;
+    try {
+      T = c_.heat.isotherm(c_.material);
+    } catch (InputError const& error) {
+      report("heat.pool_isotherm", "= \"{}\" (must be \"liquidus\", \"solidus\" or a temperature: {})", told,
+             error.what());
+      return;
+    }
+    if (T <= c_.heat.ambient_temperature || T > c_.material.boiling_point)
+      report("heat.pool_isotherm", "= \"{}\" (must lie between heat.ambient_temperature and the boiling point)", told);
   }
 
   void scan() const {

@@ -189,9 +189,8 @@ std::vector<CaseKey> heat_and_run_rows() {
        "Shielding gas, for the effect powder_conductivity."},
       {"heat", "gas_pressure", at<heat, &H::gas_pressure>, D::pressure, {1, 1e7}, Need::never, "101325",
        "Pressure of the shielding gas."},
-      {"heat", "pool_isotherm", word<heat, &H::pool_isotherm>({"liquidus", "solidus"}),
-       D::none, {}, Need::never, "\"liquidus\"",
-       "Isotherm that bounds the melt pool and tells what has melted."},
+      {"heat", "pool_isotherm", at<heat, &H::pool_isotherm>, D::none, {}, Need::never, "\"liquidus\"",
+       "Isotherm that bounds the melt pool where it is measured: \"liquidus\", \"solidus\" or a temperature such as \"1563 K\"."},
 
       {"run", "layers", at<run, &R::layers>, D::none, {1, 100000}, Need::never, "1", "Layers to build."},
       {"run", "bins", at<run, &R::bins>, D::none, {1, 1000}, Need::never, "15",

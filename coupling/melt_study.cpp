@@ -207,8 +207,7 @@ MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator
     signs.powder = powder;
     study.regime = regime_of(signs);
     study.cooling = cooling_rate(melt.probe, study.placed.material.solidus);
-    double const isotherm =
-        study.placed.heat.pool_isotherm == "solidus" ? checked.material.solidus : checked.material.liquidus;
+    double const isotherm = study.placed.heat.isotherm(checked.material);
     study.fusion = fusion_of(melt, study.cells, study.melted.exposure.source.tracks, isotherm);
     study.build.record.layers.push_back(layer);
   }

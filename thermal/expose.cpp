@@ -135,7 +135,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   apply_variable_conductivity(metal, effect_strength(effects, "variable_conductivity"));
   double const hottest = hottest_allowed(metal, effect_strength(effects, "evaporation") != 0);
   EnthalpyTable const table(metal, settings.ambient_temperature, hottest);
-  double const isotherm = settings.pool_isotherm == "solidus" ? metal.solidus : metal.liquidus;
+  double const isotherm = settings.isotherm(metal);
   PoolObserver pools(cells, content, source.tracks, {isotherm, metal.boiling_point}, comm);
 
   HeatGrid const grid(content.grid, side_y == SideY::periodic, comm);
