@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "coupling/effects/spot_drift.hpp"
@@ -100,6 +99,10 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
   if (checked.effect_strength("keyhole") != 0)
     spacing = std::min(spacing, checked.scan.scan_speed * checked.heat.cell_size / drilling_speed);
   exposure.stops = beam_stops(source.tracks, spacing);
+  for (BeamStop& stop : exposure.stops) {
+    stop.on_time = exposure.on_time;
+    exposure.on_time += stop.end_time - stop.begin_time;
+  }
   exposure.stops_per_levelling = static_cast<std::size_t>(std::ceil(checked.optics.position_spacing / spacing - 1e-9));
   source.time.push_back(exposure.stops.front().begin_time);
   for (std::size_t s = 0; s < exposure.stops.size(); ++s) {
@@ -120,12 +123,6 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
 }
 
 namespace {
-
-double beam_on_time(std::span<BeamStop const> stops) {
-  double time = 0;
-  for (BeamStop const& stop : stops) time += stop.end_time - stop.begin_time;
-  return time;
-}
 
 /// What a stop absorbs of a beam of this power. \param laser  at this time
 AbsorbedPower absorb(Exposure const& exposure, std::size_t s, double beam_power, LaserSettings const& laser,
@@ -166,15 +163,13 @@ void expose_stretch(Exposure& exposure, std::size_t stretch, MeltState const& no
   if (stretch > 0) exposure.plume.feed(now.vapour_rate, source.time[stretch] - source.time[stretch - 1]);
   if (exposure.stop_of_stretch[stretch] < 0) return;
   auto const s = static_cast<std::size_t>(exposure.stop_of_stretch[stretch]);
-  std::span<BeamStop const> const stops = exposure.stops;
-  BeamStop const& stop = stops[s];
-  double const on_time = beam_on_time(stops);
-  LaserSettings const laser = drifted_laser(checked, (layer - 1) * on_time + beam_on_time(stops.first(s)));
+  BeamStop const& stop = exposure.stops[s];
+  LaserSettings const laser = drifted_laser(checked, (layer - 1) * exposure.on_time + stop.on_time);
   AbsorbedPower& power = source.power[stretch];
   power = absorb(exposure, s, stop.power * exposure.plume.transmission(stop.along), laser, now, scene, cells, checked,
                  layer, comm);
   book_attenuation(power, stop.power);
-  accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / on_time);
+  accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / exposure.on_time);
   exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(power));
 }
 

@@ -23,6 +23,7 @@ struct BeamStop {
   Vec3 along;  ///< direction of the scan, of length 1
   double begin_time, end_time;
   double power;
+  double on_time = 0;  ///< for which the beam has been on before [s]
 };
 
 /// One layer's exposure: positions `optics.position_spacing` apart along every track, and what was absorbed there.
@@ -30,6 +31,7 @@ struct Exposure {
   raytrace::Beam beam;          ///< but for place and power
   raytrace::OpticalSet optics;  ///< of bed and part; none with laser.absorptivity given
   std::vector<BeamStop> stops;
+  double on_time = 0;                         ///< of all stops [s]
   std::size_t stops_per_levelling = 1;        ///< a keyhole moves at every stop, the melt levels after some travel
   std::vector<std::int64_t> stop_of_stretch;  ///< of the source; -1: the beam is off
   HeatSource source;                          ///< powers empty until their stretch has been exposed

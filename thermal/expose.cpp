@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/effect_catalogue.hpp"
 #include "core/error.hpp"
@@ -152,6 +153,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   Progress progress("heat", source.time.back() - source.time.front(), report == Report::progress && comm.is_root());
   MeltState state{.melted = [&] { return melted_cells(system, cells, comm); }, .keyhole = {}};
   Keyhole keyhole(metal, cells, effect_strength(effects, "keyhole"));
+  double evaporated = 0;  // [kg]
   for (std::size_t i = 0; i < source.power.size(); ++i) {
     double const begin = source.time[i], duration = source.time[i + 1] - begin;
     if (duration == 0) continue;
@@ -159,7 +161,6 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
       absorbed_now(i, state);
       check(source.power[i], content.grid);
     }
-    double const evaporated = exposure.mass_evaporated();
     if (source.power[i].cell.empty()) {
       exposure.rest(duration, begin);
     } else {
@@ -167,7 +168,8 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
     }
     if (keyhole.acts()) update(keyhole, system, cells, comm, reach_at(source, begin + duration), state);
     exposure.check_now_and_then();
-    state.vapour_rate = (exposure.mass_evaporated() - evaporated) / duration;
+    double const before = std::exchange(evaporated, exposure.mass_evaporated());
+    state.vapour_rate = (evaporated - before) / duration;
     progress.update(source.time[i + 1] - source.time.front());
   }
   HeatOutcome outcome;
