@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/bed_file.hpp"
 #include "core/error.hpp"
+#include "coupling/bed_source.hpp"
 
 namespace layerloop::coupling {
 
@@ -13,15 +12,9 @@ PowderBed first_bed(Case const& checked) {
   if (checked.powder.bed.empty()) return {};
   MachineSettings const& m = checked.machine;
   PowderBed bed = read_bed(checked.powder.bed).bed;
+  check_materials(bed, checked, checked.powder.bed);
+  wrap(bed.y, m.width);
   for (std::size_t i = 0; i < bed.size(); ++i) {
-    if (checked.admixtures.empty()) bed.material[i] = 0;
-    if (bed.material[i] < 0 || static_cast<std::size_t>(bed.material[i]) > checked.admixtures.size())
-      throw InputError(
-          fmt::format("{}: grain {} has material {} (the case has materials 0 to {}: powder.material, then "
-                      "the others of [powder.mixture] by name) give it one of them",
-                      checked.powder.bed, bed.id[i], bed.material[i], checked.admixtures.size()));
-    bed.y[i] -= m.width * std::floor(bed.y[i] / m.width);
-    if (bed.y[i] >= m.width) bed.y[i] = 0;
     double const ground = bed.x[i] < m.deposition_begin() ? -m.accumulation_depth : 0;
     bool const inside = bed.x[i] >= 0 && bed.x[i] <= m.deposition_end() && bed.z[i] > ground + 0.9 * bed.radius[i];
     if (!inside)

@@ -27,13 +27,6 @@ void add_floor(TriangleSurface& surface, Vec3 const& lower, Vec3 const& upper, d
   surface.triangles.push_back({first, first + 2, first + 3});
 }
 
-void wrap(std::vector<double>& coordinate, double period) {
-  for (double& at : coordinate) {
-    if (period > 0) at -= period * std::floor(at / period);
-    if (period > 0 && at >= period) at = 0;
-  }
-}
-
 /// Box around the grains; along periodic axes the whole tile.
 void find_box(LitBed& lit) {
   PowderBed const& bed = lit.bed;
@@ -61,35 +54,19 @@ void keep_from_open_sides(LitBed& lit) {
   }
 }
 
-void check_materials(PowderBed& bed, Case const& checked, std::string const& path) {
-  for (std::size_t i = 0; i < bed.size(); ++i) {
-    if (checked.admixtures.empty()) bed.material[i] = 0;
-    if (bed.material[i] < 0 || static_cast<std::size_t>(bed.material[i]) > checked.admixtures.size())
-      throw InputError(
-          fmt::format("{}: grain {} has material {} (the case has materials 0 to {}: powder.material, then "
-                      "the others of [powder.mixture] by name) give it one of them",
-                      path, bed.id[i], bed.material[i], checked.admixtures.size()));
-  }
-}
-
 }  // namespace
 
 LitBed bed_of_file(Case const& checked, BedSource const& source) {
-  BedFile file = read_bed(source.bed);
+  BedFile file = read_source(source, checked);
   LitBed lit;
   lit.origin = fmt::format("{} grains of {}", file.bed.size(), source.bed.filename().string());
-  lit.period = {source.periodic_x.value_or(file.periodic_x.value_or(0)),
-                source.periodic_y.value_or(file.periodic_y.value_or(0))};
-  check_materials(file.bed, checked, source.bed.string());
-  wrap(file.bed.x, lit.period[0]);
-  wrap(file.bed.y, lit.period[1]);
+  lit.period = {*file.periodic_x, *file.periodic_y};
   lit.bed = std::move(file.bed);
   if (!source.mesh.empty()) lit.surface = read_stl(source.mesh);
   find_box(lit);
-  std::optional<double> const floor = source.floor_z ? source.floor_z : file.floor_z;
-  if (floor && checked.optics.floor != "none") {
-    add_floor(lit.surface, lit.lower, lit.upper, *floor, 2 * largest_radius(lit.bed));
-    lit.lower.z() = *floor;
+  if (file.floor_z && checked.optics.floor != "none") {
+    add_floor(lit.surface, lit.lower, lit.upper, *file.floor_z, 2 * largest_radius(lit.bed));
+    lit.lower.z() = *file.floor_z;
   }
   keep_from_open_sides(lit);
   return lit;

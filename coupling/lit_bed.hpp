@@ -8,17 +8,11 @@
 #include "core/communicator.hpp"
 #include "core/powder_bed.hpp"
 #include "core/triangle_surface.hpp"
+#include "coupling/bed_source.hpp"
 #include "raytrace/beam.hpp"
 #include "raytrace/bed_scene.hpp"
 
 namespace layerloop::coupling {
-
-/// A file of grains and what it may lack. Lengths in m.
-struct BedSource {
-  std::filesystem::path bed;                              ///< csv, dump, extxyz or h5
-  std::filesystem::path mesh;                             ///< STL, or empty
-  std::optional<double> periodic_x, periodic_y, floor_z;  ///< replace those of the file
-};
 
 /// A bed that is to be lit.
 struct LitBed {

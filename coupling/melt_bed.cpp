@@ -35,9 +35,9 @@ double shift_of(std::vector<double> const& coordinate, double period, double pla
 }
 
 /// Grains that lie on the plate, renumbered.
-PowderBed laid_out(BedFile const& file, std::array<double, 2> const& period, double floor, double size_x,
-                   double size_y) {
+PowderBed laid_out(BedFile const& file, double floor, double size_x, double size_y) {
   PowderBed const& from = file.bed;
+  std::array<double, 2> const period{*file.periodic_x, *file.periodic_y};
   double const shift_x = shift_of(from.x, period[0], size_x), shift_y = shift_of(from.y, period[1], size_y);
   Copies const along = copies_over(period[0], shift_x, size_x), across = copies_over(period[1], shift_y, size_y);
   PowderBed bed;
@@ -54,11 +54,6 @@ PowderBed laid_out(BedFile const& file, std::array<double, 2> const& period, dou
   return bed;
 }
 
-void wrap(std::vector<double>& coordinate, double period) {
-  if (period == 0) return;
-  for (double& at : coordinate) at -= period * std::floor(at / period);
-}
-
 }  // namespace
 
 BuildState bare_plate(Case const& placed) {
@@ -69,17 +64,12 @@ BuildState bare_plate(Case const& placed) {
 }
 
 BuildState plate_with_bed(Case& placed, BedSource const& source) {
-  BedFile file = read_bed(source.bed);
+  BedFile const file = read_source(source, placed);
   if (file.bed.size() == 0)
     throw InputError(fmt::format("{} holds no grain (there is nothing to melt on the plate) use melt.bed = \"plate\"",
                                  source.bed.string()));
-  std::array<double, 2> const period{source.periodic_x.value_or(file.periodic_x.value_or(0)),
-                                     source.periodic_y.value_or(file.periodic_y.value_or(0))};
-  wrap(file.bed.x, period[0]);
-  wrap(file.bed.y, period[1]);
-  double const floor = source.floor_z ? *source.floor_z : file.floor_z.value_or(0);
+  double const floor = file.floor_z.value_or(0);
   for (std::size_t i = 0; i < file.bed.size(); ++i) {
-    file.bed.material[i] = 0;
     if (file.bed.z[i] - floor < 0.9 * file.bed.radius[i])
       throw InputError(
           fmt::format("{}: grain {} is in the floor (z = {:.4g} m, radius {:.4g} m, floor at {:.4g} m) give its level "
@@ -89,7 +79,7 @@ BuildState plate_with_bed(Case& placed, BedSource const& source) {
   }
   placed.powder.diameters = {2 * std::ranges::max(file.bed.radius)};
   BuildState build = bare_plate(placed);
-  build.bed = laid_out(file, period, floor, placed.machine.deposition_length, placed.machine.width);
+  build.bed = laid_out(file, floor, placed.machine.deposition_length, placed.machine.width);
   if (build.bed.size() == 0)
     throw InputError(fmt::format("no grain of {} lies on the plate (the bed has a hole in its middle) use another bed",
                                  source.bed.string()));

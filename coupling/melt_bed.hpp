@@ -4,8 +4,8 @@
 
 #include "core/case.hpp"
 #include "core/communicator.hpp"
+#include "coupling/bed_source.hpp"
 #include "coupling/build_state.hpp"
-#include "coupling/lit_bed.hpp"
 
 namespace layerloop::coupling {
 
