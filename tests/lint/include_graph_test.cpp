@@ -22,7 +22,8 @@ std::map<std::string, Names> const may_include = {
     {"raytrace", {"raytrace", "core"}},
     {"thermal", {"thermal", "core"}},
     {"coupling", {"coupling", "dem", "raytrace", "thermal", "core"}},
-    {"apps", {"apps", "coupling", "dem", "raytrace", "thermal", "core"}},
+    {"validation", {"validation", "coupling", "dem", "raytrace", "thermal", "core"}},
+    {"apps", {"apps", "validation", "coupling", "dem", "raytrace", "thermal", "core"}},
 };
 
 /// A library and the folders it may be used in; `doctor` asks every library for its version.

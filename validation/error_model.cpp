@@ -1,0 +1,83 @@
+#include "validation/error_model.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "core/error.hpp"
+
+namespace layerloop::validation {
+namespace {
+
+auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+}  // namespace
+
+Eigen::VectorXd at_observations(Study const& study, Eigen::VectorXd const& by_observable) {
+  Eigen::VectorXd all(index(study.observations.size()));
+  for (Eigen::Index i = 0; i < all.size(); ++i)
+    all[i] = by_observable[index(study.observations[static_cast<std::size_t>(i)].observable)];
+  return all;
+}
+
+Eigen::VectorXd measured_values(Study const& study) {
+  Eigen::VectorXd all(index(study.observations.size()));
+  for (Eigen::Index i = 0; i < all.size(); ++i) all[i] = study.observations[static_cast<std::size_t>(i)].value;
+  return all;
+}
+
+Eigen::MatrixXd covariance(Study const& study, Prediction const& prediction) {
+  Eigen::Index const n = index(study.observations.size());
+  Eigen::MatrixXd c = Eigen::MatrixXd::Zero(n, n);
+  std::map<std::size_t, std::vector<Eigen::Index>> sharing;  // by observable
+  std::map<std::string, Eigen::VectorXd> systematic;         // by sys_group
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Observation const& seen = study.observations[static_cast<std::size_t>(i)];
+    c(i, i) += seen.u_stat * seen.u_stat;
+    sharing[seen.observable].push_back(i);
+    double const model = prediction.value[index(seen.observable)];
+    double const shift = std::hypot(seen.u_sys_rel * model, seen.u_sys_abs);
+    if (shift == 0) continue;
+    if (seen.sys_group.empty()) {
+      c(i, i) += shift * shift;
+      continue;
+    }
+    auto const group = systematic.try_emplace(seen.sys_group, Eigen::VectorXd::Zero(n)).first;
+    group->second[i] = shift;
+  }
+  for (auto const& [observable, rows] : sharing) {
+    double const variance =
+        std::pow(prediction.u_sampling[index(observable)], 2) + std::pow(prediction.u_numerical[index(observable)], 2);
+    for (Eigen::Index const a : rows)
+      for (Eigen::Index const b : rows) c(a, b) += variance;
+  }
+  for (auto const& [name, shift] : systematic) c += shift * shift.transpose();
+  return c;
+}
+
+Whitening::Whitening(Eigen::MatrixXd const& covariance) : factor_(covariance) {
+  if (factor_.info() != Eigen::Success)
+    throw InputError(
+        "the uncertainties of the measurements leave no scatter (their covariance is singular) give every row a u_stat "
+        "above zero");
+}
+
+Eigen::MatrixXd Whitening::operator()(Eigen::MatrixXd const& differences) const {
+  return factor_.matrixL().solve(differences);
+}
+
+Projection::Projection(Eigen::Index rows, Eigen::MatrixXd const& columns) : basis_(rows, 0) {
+  if (columns.cols() == 0) return;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  qr.setThreshold(1e-9);
+  basis_ = Eigen::MatrixXd(qr.householderQ() * Eigen::MatrixXd::Identity(rows, qr.rank()));
+}
+
+Eigen::MatrixXd Projection::operator()(Eigen::MatrixXd const& vectors) const {
+  return vectors - basis_ * (basis_.transpose() * vectors);
+}
+
+Eigen::VectorXd Projection::diagonal() const {
+  return Eigen::VectorXd::Ones(basis_.rows()) - basis_.rowwise().squaredNorm();
+}
+
+}  // namespace layerloop::validation
