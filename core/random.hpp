@@ -15,7 +15,8 @@ enum class RandomStream : std::uint32_t {
   plate_grains = 5,
   grain_material = 6,
   ray_scatter = 7,
-  denudation = 8
+  denudation = 8,
+  null_draws = 9
 };
 
 /// Four independent uniform numbers in (0, 1), a pure function of its arguments (Philox 4x32-10, Salmon et al. 2011):

@@ -6,22 +6,34 @@
 
 #include "validation/diagnosis.hpp"
 #include "validation/error_model.hpp"
+#include "validation/largest_null.hpp"
 #include "validation/study.hpp"
 
 namespace layerloop::validation {
 
 /// Directions in which residuals may show structure, with no physics in them: for every quantity and for all together,
-/// over every input of the conditions (line, products of two), every label, place, layer, and order of acquisition.
+/// throughout, over every input of the conditions (line, square, products), every label, place, layer, and order of
+/// acquisition (drift, jumps), each as a share of the predicted value.
 struct Patterns {
-  std::vector<std::string> texts;
-  Eigen::MatrixXd columns;  ///< (observations, patterns), whitened
+  std::vector<std::string> texts;  ///< "pool.depth: over laser.power"
+  Eigen::MatrixXd columns;         ///< (observations, patterns), whitened
 };
 Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten);
 
-/// z of every pattern in projected residuals, strongest first, p over the family by the largest |z| of draws of the
-/// null. \param scale  sigma: residuals are divided by it
-std::vector<PatternFinding> find_patterns(Patterns const& patterns, Eigen::VectorXd const& residual,
-                                          Projection const& projection, double scale, std::uint64_t seed,
-                                          std::size_t most = 20);
+/// Looks for patterns in what calibration cannot do.
+class PatternSearch {
+ public:
+  PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed);
+  /// Strongest first, with p over the whole family.
+  /// \param residual  whitened and projected, measured minus predicted \param scale  sigma: residuals are divided by it
+  std::vector<PatternFinding> find(Eigen::VectorXd const& residual, double scale, std::size_t most = 20) const;
+  double critical(double family_error) const { return null_.critical(family_error); }
+  Eigen::MatrixXd const& unit_directions() const { return unit_; }  ///< (observations, patterns that are left)
+
+ private:
+  Eigen::MatrixXd unit_;
+  std::vector<std::string> texts_;
+  LargestNull null_;
+};
 
 }  // namespace layerloop::validation

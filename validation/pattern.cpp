@@ -1,0 +1,182 @@
+#include "validation/pattern.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <set>
+
+#include "validation/largest_null.hpp"
+
+namespace layerloop::validation {
+namespace {
+
+/// A number that every observation has, over which residuals may vary. Not a number: outside of the pattern.
+struct Variable {
+  std::string words;  ///< "rises with laser.power"
+  std::vector<double> values;
+  bool is_level = false;  ///< 0 or 1: no products of it
+};
+
+/// To mean 0 and largest 1, so that products are of shapes and not of sizes; false where it does not vary.
+bool centre(std::vector<double>& values) {
+  double const mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  double largest = 0;
+  for (double& v : values) v -= mean, largest = std::max(largest, std::abs(v));
+  if (!(largest > 1e-12 * std::abs(mean))) return false;
+  for (double& v : values) v /= largest;
+  return true;
+}
+
+class Variables {
+ public:
+  explicit Variables(Study const& study) : study_(study) {
+    add_inputs();
+    add_places();
+    add_labels();
+    add_order();
+  }
+  std::vector<Variable> all;
+
+ private:
+  using Reading = std::function<double(Observation const&)>;
+
+  std::vector<double> read(Reading const& reading) const {
+    std::vector<double> values;
+    for (Observation const& seen : study_.observations) values.push_back(reading(seen));
+    return values;
+  }
+
+  Condition const& of(Observation const& seen) const { return study_.conditions[seen.condition]; }
+
+  void add_line(std::string const& name, std::vector<double> values) {
+    if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); }) && centre(values))
+      all.push_back({name, std::move(values)});
+  }
+
+  void add_inputs() {
+    std::set<std::string> keys;
+    for (Condition const& c : study_.conditions)
+      for (auto const& [key, value] : c.inputs) keys.insert(key);
+    for (std::string const& key : keys) {
+      add_line(key, read([&](Observation const& seen) {
+                 auto const found = of(seen).inputs.find(key);
+                 return found == of(seen).inputs.end() ? NAN : found->second;
+               }));
+    }
+  }
+
+  void add_places() {
+    auto const observable = [&](Observation const& seen) -> Observable const& {
+      return study_.observables[seen.observable];
+    };
+    add_line("x", read([&](Observation const& seen) { return observable(seen).x.value_or(NAN); }));
+    add_line("y", read([&](Observation const& seen) { return observable(seen).y.value_or(NAN); }));
+    add_line("layer", read([&](Observation const& seen) { return observable(seen).layer.value_or(NAN); }));
+  }
+
+  void add_labels() {
+    std::map<std::string, std::set<std::string>> levels;
+    for (Observation const& seen : study_.observations)
+      for (auto const& [label, level] : of(seen).labels) levels[label].insert(level);
+    for (auto const& [label, names] : levels) {
+      if (names.size() < 2) continue;
+      for (std::string const& name : names) {
+        all.push_back({fmt::format("{} {}", label, name), read([&](Observation const& seen) {
+                         auto const found = of(seen).labels.find(label);
+                         return found != of(seen).labels.end() && found->second == name ? 1.0 : 0.0;
+                       }),
+                       true});
+      }
+    }
+  }
+
+  /// A drift over the conditions in the order of acquisition, and jumps between them.
+  void add_order() {
+    auto const n = study_.conditions.size();
+    add_line("order of acquisition",
+             read([&](Observation const& seen) { return static_cast<double>(seen.condition); }));
+    constexpr std::size_t most_jumps = 12;
+    std::size_t const stride = std::max<std::size_t>(1, n / most_jumps);
+    for (std::size_t first = stride; first + 1 < n; first += stride) {
+      all.push_back({fmt::format("condition {} on", study_.conditions[first].id),
+                     read([&](Observation const& seen) { return seen.condition >= first ? 1.0 : 0.0; }), true});
+    }
+  }
+
+  Study const& study_;
+};
+
+}  // namespace
+
+Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten) {
+  std::vector<Variable> const variables = Variables(study).all;
+  std::set<std::string> quantities;
+  for (Observation const& seen : study.observations) quantities.insert(seen.quantity);
+  std::vector<std::string> rows(quantities.begin(), quantities.end());
+  if (rows.size() > 1) rows.push_back("everything");
+
+  Patterns found;
+  std::vector<Eigen::VectorXd> columns;
+  auto const n = static_cast<Eigen::Index>(study.observations.size());
+  auto const add = [&](std::string const& quantity, std::string const& words, auto const& value) {
+    Eigen::VectorXd column = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      auto const k = static_cast<std::size_t>(i);
+      if (quantity == "everything" || study.observations[k].quantity == quantity)
+        column[i] = std::abs(predicted[i]) * value(k);
+    }
+    if (column.norm() == 0) return;
+    columns.push_back(std::move(column));
+    found.texts.push_back(fmt::format("{}: {}", quantity, words));
+  };
+  for (std::string const& quantity : rows) {
+    add(quantity, "throughout", [](std::size_t) { return 1.0; });
+    for (Variable const& v : variables)
+      add(quantity, v.is_level ? v.words : "over " + v.words, [&](std::size_t k) { return v.values[k]; });
+    for (std::size_t a = 0; a < variables.size(); ++a) {
+      for (std::size_t b = a; b < variables.size(); ++b) {
+        if (variables[a].is_level || variables[b].is_level) continue;
+        add(quantity, fmt::format("over {} times {}", variables[a].words, variables[b].words),
+            [&](std::size_t k) { return variables[a].values[k] * variables[b].values[k]; });
+      }
+    }
+  }
+  found.columns.resize(n, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) found.columns.col(static_cast<Eigen::Index>(k)) = columns[k];
+  found.columns = whiten(found.columns);
+  return found;
+}
+
+PatternSearch::PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed)
+    : unit_(projection(patterns.columns)), null_({}, {}, 0) {
+  Eigen::VectorXd const before = patterns.columns.colwise().norm();
+  Eigen::Index kept = 0;
+  for (Eigen::Index k = 0; k < unit_.cols(); ++k) {
+    double const norm = unit_.col(k).norm();
+    if (norm < 1e-3 * before[k]) continue;  // calibration can do all of it
+    unit_.col(kept) = unit_.col(k) / norm;
+    texts_.push_back(patterns.texts[static_cast<std::size_t>(k)]);
+    ++kept;
+  }
+  unit_.conservativeResize(Eigen::NoChange, kept);
+  null_ = LargestNull(unit_, std::vector<bool>(static_cast<std::size_t>(kept), true), seed);
+}
+
+std::vector<PatternFinding> PatternSearch::find(Eigen::VectorXd const& residual, double scale, std::size_t most) const {
+  Eigen::VectorXd const z = unit_.transpose() * residual / scale;
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(z.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, [&](auto a, auto b) { return std::abs(z[a]) > std::abs(z[b]); });
+  std::vector<PatternFinding> found;
+  for (Eigen::Index const k : order) {
+    if (found.size() == most) break;
+    found.push_back({fmt::format("measured {} {}", z[k] > 0 ? "above" : "below", texts_[static_cast<std::size_t>(k)]),
+                     z[k], null_.p(std::abs(z[k]))});
+  }
+  return found;
+}
+
+}  // namespace layerloop::validation
