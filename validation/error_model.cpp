@@ -65,6 +65,8 @@ Eigen::MatrixXd Whitening::operator()(Eigen::MatrixXd const& differences) const 
   return factor_.matrixL().solve(differences);
 }
 
+Eigen::MatrixXd Whitening::inverse(Eigen::MatrixXd const& whitened) const { return factor_.matrixL() * whitened; }
+
 Projection::Projection(Eigen::Index rows, Eigen::MatrixXd const& columns) : basis_(rows, 0) {
   if (columns.cols() == 0) return;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);

@@ -20,6 +20,7 @@ class Whitening {
  public:
   explicit Whitening(Eigen::MatrixXd const& covariance);
   Eigen::MatrixXd operator()(Eigen::MatrixXd const& differences) const;
+  Eigen::MatrixXd inverse(Eigen::MatrixXd const& whitened) const;
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;

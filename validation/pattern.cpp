@@ -150,6 +150,28 @@ Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, 
   return found;
 }
 
+Eigen::MatrixXd label_columns(Study const& study, std::string const& label, Eigen::VectorXd const& predicted,
+                              Whitening const& whiten) {
+  std::map<std::pair<std::string, std::string>, std::vector<Eigen::Index>> rows;  // by quantity and level
+  std::set<std::string> levels;
+  for (std::size_t i = 0; i < study.observations.size(); ++i) {
+    Observation const& seen = study.observations[i];
+    auto const level = study.conditions[seen.condition].labels.find(label);
+    std::string const name = level == study.conditions[seen.condition].labels.end() ? "" : level->second;
+    levels.insert(name);
+    rows[{seen.quantity, name}].push_back(static_cast<Eigen::Index>(i));
+  }
+  auto const n = static_cast<Eigen::Index>(study.observations.size());
+  if (levels.size() < 2) return {n, 0};
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(rows.size()));
+  Eigen::Index k = 0;
+  for (auto const& [name, which] : rows) {
+    for (Eigen::Index const i : which) columns(i, k) = std::abs(predicted[i]);
+    ++k;
+  }
+  return whiten(columns);
+}
+
 PatternSearch::PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed)
     : unit_(projection(patterns.columns)), null_({}, {}, 0) {
   Eigen::VectorXd const before = patterns.columns.colwise().norm();

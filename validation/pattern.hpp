@@ -20,6 +20,11 @@ struct Patterns {
 };
 Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten);
 
+/// What a label could do on its own: an offset of every quantity for each of its levels, whitened. Empty with one
+/// level.
+Eigen::MatrixXd label_columns(Study const& study, std::string const& label, Eigen::VectorXd const& predicted,
+                              Whitening const& whiten);
+
 /// Looks for patterns in what calibration cannot do.
 class PatternSearch {
  public:

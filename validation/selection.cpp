@@ -1,0 +1,186 @@
+#include "validation/selection.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "validation/largest_null.hpp"
+
+namespace layerloop::validation {
+namespace {
+
+constexpr double least_kept = 1e-3;      // of a signature's norm: below, calibration can do all of it
+constexpr double least_contender = 2.0;  // z from the signature: a refit may raise it
+constexpr std::size_t most_twins = 3;    // that are refitted beside the contenders
+
+auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+bool is_active(Fit const& fit, std::size_t candidate) {
+  return std::ranges::find(fit.active, candidate) != fit.active.end();
+}
+
+/// Those that are worth a refit: the highest scores, and the twins of the highest.
+std::vector<std::size_t> contenders(Workbench const& bench, CandidateScores const& scores) {
+  std::vector<std::size_t> order(bench.candidates.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, [&](auto a, auto b) { return scores.z[index(a)] > scores.z[index(b)]; });
+  std::vector<std::size_t> chosen;
+  std::size_t twins = 0;
+  for (std::size_t const k : order) {
+    if (scores.z[index(k)] < least_contender) break;
+    bool const is_twin =
+        !chosen.empty() && scores.cosines(index(k), index(chosen.front())) > bench.thresholds.twin_cosine;
+    if (chosen.size() - twins < static_cast<std::size_t>(bench.thresholds.refitted_candidates)) {
+      chosen.push_back(k);
+    } else if (is_twin && twins < most_twins) {
+      chosen.push_back(k);
+      ++twins;
+    }
+  }
+  return chosen;
+}
+
+/// As if the model were a line: what one looks at without a refit.
+Fit on_the_line(Workbench const& bench, Fit wider) {
+  Eigen::MatrixXd const normal = wider.jacobian.transpose() * wider.jacobian +
+                                 1e-9 * Eigen::MatrixXd::Identity(wider.jacobian.cols(), wider.jacobian.cols());
+  Eigen::VectorXd const step = normal.ldlt().solve(wider.jacobian.transpose() * wider.residual);
+  wider.residual -= wider.jacobian * step;
+  wider.objective = wider.residual.squaredNorm() / bench.sigma2;
+  wider.point.strengths[index(wider.active.back())] +=
+      step[step.size() - 1] * bench.candidates[wider.active.back()].prior_scale;
+  return wider;
+}
+
+std::vector<Trial> trials_of(Workbench const& bench, Fit const& fit, Signatures const& signatures,
+                             std::vector<std::size_t> const& tried) {
+  std::vector<Trial> trials;
+  for (std::size_t const k : tried) {
+    Fit wider = bench.refit().with(fit, k, signatures.columns.col(index(k)));
+    trials.push_back(
+        {k, bench.thresholds.refits ? bench.refit().improved(std::move(wider)) : on_the_line(bench, std::move(wider))});
+  }
+  std::ranges::stable_sort(trials, {}, [](Trial const& trial) { return trial.fit.objective; });
+  return trials;
+}
+
+/// Strength over its uncertainty.
+double score_of(Workbench const& bench, Fit const& fit, std::size_t active) {
+  Eigen::Index const k = fit.jacobian.cols() - index(fit.active.size()) + index(active);
+  double const strength =
+      fit.point.strengths[index(fit.active[active])] / bench.candidates[fit.active[active]].prior_scale;
+  return std::abs(strength) / bench.refit().uncertainty(fit)[k];
+}
+
+/// Active candidates that the others have made superfluous go.
+void drop_superfluous(Workbench const& bench, Selection& selection) {
+  for (std::size_t a = 0; a < selection.fit.active.size() && selection.fit.active.size() > 1;) {
+    if (score_of(bench, selection.fit, a) >= bench.thresholds.drop_z) {
+      ++a;
+      continue;
+    }
+    selection.fit = bench.refit().improved(bench.refit().without(selection.fit, a));
+    selection.trials.erase(selection.trials.begin() + static_cast<std::ptrdiff_t>(a));
+  }
+}
+
+/// Each choice was made with fewer candidates than are active now: its rivals are tried again beside the others.
+void try_rivals_again(Workbench const& bench, Selection& selection) {
+  if (selection.fit.active.size() < 2 || !bench.thresholds.refits) return;
+  for (std::size_t a = 0; a < selection.fit.active.size(); ++a) {
+    std::size_t const chosen = selection.fit.active[a];
+    Fit const base = bench.refit().without(selection.fit, a);
+    std::vector<Trial> trials{{chosen, selection.fit}};
+    for (Trial const& rival : selection.trials[a]) {
+      if (is_active(selection.fit, rival.candidate)) continue;
+      Fit wider = bench.refit().with(base, rival.candidate, selection.signatures.columns.col(index(rival.candidate)));
+      trials.push_back({rival.candidate, bench.refit().improved(std::move(wider))});
+    }
+    std::ranges::stable_sort(trials, {}, [](Trial const& trial) { return trial.fit.objective; });
+    selection.trials[a] = trials;
+    if (trials.front().candidate == chosen) continue;
+    selection.fit = trials.front().fit;  // its strength stands last: so do its trials
+    std::rotate(selection.trials.begin() + static_cast<std::ptrdiff_t>(a),
+                selection.trials.begin() + static_cast<std::ptrdiff_t>(a) + 1, selection.trials.end());
+  }
+}
+
+}  // namespace
+
+Projection Workbench::projection(Fit const& fit) const {
+  if (thresholds.projects) return {frame.size(), fit.jacobian};
+  return {frame.size(), fit.jacobian.rightCols(static_cast<Eigen::Index>(fit.active.size()))};
+}
+
+Adequacy adequacy_of(Workbench const& bench, Fit const& fit) {
+  Projection const project = bench.projection(fit);
+  Eigen::VectorXd const left = project(fit.residual);
+  Adequacy found;
+  found.chi2 = left.squaredNorm() / bench.sigma2;
+  found.dof =
+      static_cast<double>(bench.frame.size() - project.rank()) - static_cast<double>(bench.frame.spared().size());
+  if (found.dof > 0)
+    found.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.dof), found.chi2));
+  PatternSearch const search(bench.patterns, project, bench.seed);
+  found.patterns = search.find(left, std::sqrt(bench.sigma2));
+  found.pattern_critical = search.critical(bench.thresholds.family_error);
+  double const largest = found.patterns.empty() ? 0 : std::abs(found.patterns.front().z);
+  found.ok = found.p > bench.thresholds.adequate_p && largest < found.pattern_critical;
+  return found;
+}
+
+CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatures const& signatures) {
+  Projection const project = bench.projection(fit);
+  double const sigma = std::sqrt(bench.sigma2);
+  Eigen::MatrixXd unit = project(signatures.columns);
+  Eigen::Index const n = unit.cols();
+  CandidateScores found{.z = Eigen::VectorXd::Zero(n),
+                        .reach = Eigen::VectorXd::Zero(n),
+                        .kept = Eigen::VectorXd::Zero(n),
+                        .cosines = Eigen::MatrixXd::Zero(n, n)};
+  std::vector<bool> two_sided(bench.candidates.size());
+  Eigen::VectorXd const left = project(fit.residual);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    double const whole = signatures.columns.col(k).norm(), norm = unit.col(k).norm();
+    bool const stands = whole > 0 && norm > least_kept * whole && !is_active(fit, static_cast<std::size_t>(k));
+    two_sided[static_cast<std::size_t>(k)] = bench.candidates[static_cast<std::size_t>(k)].two_sided;
+    unit.col(k) = stands ? Eigen::VectorXd(unit.col(k) / norm) : Eigen::VectorXd::Zero(unit.rows());
+    if (whole > 0) found.kept[k] = norm * norm / (whole * whole);
+    if (!stands) continue;
+    found.reach[k] = norm / sigma;
+    double const z = unit.col(k).dot(left) / sigma;
+    found.z[k] = two_sided[static_cast<std::size_t>(k)] ? std::abs(z) : z;
+  }
+  found.cosines = unit.transpose() * unit;
+  found.critical = LargestNull(unit, two_sided, bench.seed + 1).critical(bench.thresholds.family_error);
+  return found;
+}
+
+Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures signatures) {
+  Selection selection{
+      .fit = std::move(calibrated), .trials = {}, .signatures = std::move(signatures), .scores = {}, .adequacy = {}};
+  selection.adequacy = adequacy_of(bench, selection.fit);
+  selection.scores = score_candidates(bench, selection.fit, selection.signatures);
+  while (static_cast<int>(selection.fit.active.size()) < bench.thresholds.most_effects) {
+    std::vector<std::size_t> const tried = contenders(bench, selection.scores);
+    bool const any = !tried.empty() && selection.scores.z[index(tried.front())] > selection.scores.critical;
+    if (tried.empty() || (!any && selection.adequacy.ok)) break;
+    std::vector<Trial> trials = trials_of(bench, selection.fit, selection.signatures, tried);
+    double const gain = selection.fit.objective - trials.front().fit.objective;
+    if (!(gain > std::pow(selection.scores.critical, 2))) break;
+    if (bench.thresholds.refits) trials.front().fit = bench.refit().settled(std::move(trials.front().fit));
+    selection.fit = trials.front().fit;
+    selection.trials.push_back(std::move(trials));
+    drop_superfluous(bench, selection);
+    selection.adequacy = adequacy_of(bench, selection.fit);
+    if (selection.adequacy.ok) break;
+    selection.signatures = probe_candidates(bench.model, bench.candidates, bench.frame, selection.fit);
+    selection.scores = score_candidates(bench, selection.fit, selection.signatures);
+  }
+  try_rivals_again(bench, selection);
+  if (selection.fit.active.size() > 1) selection.adequacy = adequacy_of(bench, selection.fit);
+  return selection;
+}
+
+}  // namespace layerloop::validation

@@ -1,0 +1,23 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "validation/refit.hpp"
+
+namespace layerloop::validation {
+
+/// What every candidate does to the observations, seen through a frame, for one prior scale of its strength: a secant
+/// with the same random numbers with and without, so that thresholds are caught and grains cancel.
+struct Signatures {
+  Eigen::MatrixXd columns;                ///< (observations, candidates); zero where there is none
+  std::vector<double> noise;              ///< trace of a column's covariance from grains and rays, upper bound
+  std::vector<std::string> not_testable;  ///< by candidate: why there is none; empty: tested
+};
+
+/// Probes every candidate at its prior scale, further where it does nothing yet, nearer where the model has no answer.
+/// Those that are active in the fit have the columns of its Jacobian.
+Signatures probe_candidates(Model& model, std::vector<Candidate> const& candidates, ResidualFrame const& frame,
+                            Fit const& fit);
+
+}  // namespace layerloop::validation
