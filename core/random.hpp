@@ -16,7 +16,9 @@ enum class RandomStream : std::uint32_t {
   grain_material = 6,
   ray_scatter = 7,
   denudation = 8,
-  null_draws = 9
+  null_draws = 9,
+  blind_design = 10,
+  blind_truth = 11
 };
 
 /// Four independent uniform numbers in (0, 1), a pure function of its arguments (Philox 4x32-10, Salmon et al. 2011):
