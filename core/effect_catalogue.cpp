@@ -21,16 +21,16 @@ using enum EffectClass;
 
 std::vector<Effect> grain_effects() {
   return {
-      {"cohesion", dem, calibration, "true", 10, 0.5,
+      {"cohesion", dem, physics, "true", 10, 0.5,
        "Cohesion of [contact]; the strength scales its energy.",
        "thesis eq. 6; Johnson, Kendall & Roberts 1971; Derjaguin, Muller & Toporov 1975", "dem/contact_law.cpp"},
-      {"rolling_resistance", dem, calibration, "true", 10, 0.5,
+      {"rolling_resistance", dem, physics, "true", 10, 0.5,
        "Rolling friction of [contact]; the strength scales it.",
        "Ai et al., Powder Technol. 206 (2011) 269", "dem/contact_law.cpp"},
-      {"wall_friction", dem, calibration, "true", 10, 0.5,
+      {"wall_friction", dem, physics, "true", 10, 0.5,
        "Friction at walls of its own, contact.wall_friction; strength 0: walls rub as grains do.",
        "Coulomb", "dem/wall_contacts.cpp"},
-      {"wall_cohesion", dem, calibration, "true", 10, 0.5,
+      {"wall_cohesion", dem, physics, "true", 10, 0.5,
        "Cohesion between grains and walls; the strength scales its energy.",
        "thesis eq. 6", "dem/wall_contacts.cpp"},
       {"capillary_bridge", dem, physics, "false", 10, 1,
