@@ -39,7 +39,8 @@ std::string Page::html() const {
                                {"cards", cards},
                                {"contents", contents},
                                {"body", body},
-                               {"bed_data", bed_data}});
+                               {"bed_data", bed_data},
+                               {"files", escape(files)}});
 }
 
 }  // namespace layerloop::coupling

@@ -15,6 +15,7 @@
 #include "coupling/report/ledger_checks.hpp"
 #include "coupling/report/svg_map.hpp"
 #include "coupling/report/svg_plot.hpp"
+#include "coupling/report/svg_scatter.hpp"
 #include "sample_run.hpp"
 
 namespace layerloop::coupling {
@@ -242,6 +243,33 @@ TEST(LedgerChecks, an_open_ledger_is_seen) {
   bad = good;
   bad.mass_relative_error = std::nan("");
   EXPECT_EQ(holding(bad), 4);
+}
+
+std::size_t count_of(std::string const& text, std::string_view part) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++n;
+  return n;
+}
+
+TEST(SvgScatter, draws_what_is_finite_and_keeps_to_the_style_sheet) {
+  double const nan = std::nan("");
+  ScatterPlot const plot{.x_label = "measured <um>",
+                         .y_label = "model",
+                         .series = {{.name = "a & b", .x = {1, 2, nan}, .y = {1, 3, 2}, .y_error = {0.5, 0, 1}},
+                                    {.name = "c", .x = {1.5}, .y = {nan}}},
+                         .diagonal = Diagonal::drawn};
+  std::string const drawn = scatter_plot(plot);
+  EXPECT_EQ(count_of(drawn, "r=\"3.2\""), 2U);
+  EXPECT_EQ(count_of(drawn, "class=\"error\""), 1U);
+  EXPECT_TRUE(holds(drawn, "measured &lt;um&gt;") && holds(drawn, "a &amp; b"));
+  std::string const table = square_matrix({"x", "y"}, {1, -0.4, -0.4, 1}, "cosines");
+  EXPECT_EQ(count_of(table, "<rect"), 4U);
+  EXPECT_TRUE(holds(table, ">-40</text>"));
+  std::string const bars = lying_bars({.x_label = "z", .bars = {{.name = "keyhole", .value = 4, .error = 1}}});
+  std::string const map = coloured_points(
+      {.x_label = "P", .y_label = "v", .value_label = "z", .x = {1, 2}, .y = {1, nan}, .value = {4, 1}});
+  EXPECT_EQ(count_of(map, "class=\"signed\""), 5U + 1U);
+  for (std::string const& text : {drawn, table, bars, map}) EXPECT_FALSE(holds(text, "style="));
 }
 
 }  // namespace
