@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "validation/noise_level.hpp"
 #include "validation/selection.hpp"
+#include "validation/smooth_correction.hpp"
 #include "validation/verdict.hpp"
 
 namespace layerloop::validation {
@@ -168,7 +169,8 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   NoiseLevel const noise = find_noise_level(frame, calibrated, signatures, patterns, thresholds);
 
   // Which of it is the matter.
-  Workbench const bench{model, candidates, frame, patterns, thresholds, noise.sigma2, seed};
+  LargestNull const null = PatternSearch(patterns, Projection(frame.size(), calibrated.jacobian), seed).null();
+  Workbench const bench{model, candidates, frame, patterns, null, thresholds, noise.sigma2, seed};
   calibrated.objective = calibrated.residual.squaredNorm() / noise.sigma2;
   Adequacy const before = adequacy_of(bench, calibrated);
   CandidateScores const scores = score_candidates(bench, calibrated, signatures);
@@ -194,6 +196,9 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   diagnosis.calibrated = calibrated.point;
   diagnosis.final_point = selection.fit.point;
   diagnosis.table = table_of(bench, base, calibrated, selection.fit, signatures);
+  if (!before.ok)
+    diagnosis.smooth_explained =
+        smooth_share(study, calibrated.residual, Projection(frame.size(), calibrated.jacobian), noise.sigma2);
   reach_verdict({bench, calibrated, before, noise, selection, diagnosis.parameters, diagnosis.smooth_explained},
                 diagnosis);
   diagnosis.passes = model.passes() - passes_before;

@@ -9,6 +9,7 @@ namespace layerloop::validation {
 /// Young, Resampling-Based Multiple Testing, 1993, max-T).
 class LargestNull {
  public:
+  LargestNull() = default;  ///< of nothing
   /// \param directions  (n, m) unit columns that unit noise is scored along
   /// \param two_sided   by column: |score| counts, else the score
   LargestNull(Eigen::MatrixXd const& directions, std::vector<bool> const& two_sided, std::uint64_t seed);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -150,30 +151,53 @@ Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, 
   return found;
 }
 
-Eigen::MatrixXd label_columns(Study const& study, std::string const& label, Eigen::VectorXd const& predicted,
-                              Whitening const& whiten) {
-  std::map<std::pair<std::string, std::string>, std::vector<Eigen::Index>> rows;  // by quantity and level
-  std::set<std::string> levels;
+namespace {
+
+/// Columns of one change: by quantity, on the observations where it holds.
+Eigen::MatrixXd jump_columns(Study const& study, Eigen::VectorXd const& predicted,
+                             std::function<bool(std::size_t condition)> const& holds) {
+  std::map<std::string, Eigen::VectorXd> by_quantity;
   for (std::size_t i = 0; i < study.observations.size(); ++i) {
     Observation const& seen = study.observations[i];
-    auto const level = study.conditions[seen.condition].labels.find(label);
-    std::string const name = level == study.conditions[seen.condition].labels.end() ? "" : level->second;
-    levels.insert(name);
-    rows[{seen.quantity, name}].push_back(static_cast<Eigen::Index>(i));
+    if (!holds(seen.condition)) continue;
+    auto const row = static_cast<Eigen::Index>(i);
+    by_quantity.try_emplace(seen.quantity, Eigen::VectorXd::Zero(predicted.size())).first->second[row] =
+        std::abs(predicted[row]);
   }
-  auto const n = static_cast<Eigen::Index>(study.observations.size());
-  if (levels.size() < 2) return {n, 0};
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(rows.size()));
+  Eigen::MatrixXd columns(predicted.size(), static_cast<Eigen::Index>(by_quantity.size()));
   Eigen::Index k = 0;
-  for (auto const& [name, which] : rows) {
-    for (Eigen::Index const i : which) columns(i, k) = std::abs(predicted[i]);
-    ++k;
-  }
-  return whiten(columns);
+  for (auto const& [quantity, column] : by_quantity) columns.col(k++) = column;
+  return columns;
 }
 
-PatternSearch::PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed)
-    : unit_(projection(patterns.columns)), null_({}, {}, 0) {
+}  // namespace
+
+std::vector<Jump> jumps_of(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten) {
+  std::vector<Jump> jumps;
+  std::set<std::pair<std::string, std::string>> levels;
+  std::set<std::size_t> seen_conditions;
+  for (Observation const& seen : study.observations) {
+    seen_conditions.insert(seen.condition);
+    for (auto const& level : study.conditions[seen.condition].labels) levels.insert(level);
+  }
+  for (auto const& [label, level] : levels) {
+    auto const holds = [&](std::size_t c) {
+      auto const found = study.conditions[c].labels.find(label);
+      return found != study.conditions[c].labels.end() && found->second == level;
+    };
+    if (std::ranges::all_of(seen_conditions, holds)) continue;
+    jumps.push_back({label + " " + level, label, whiten(jump_columns(study, predicted, holds))});
+  }
+  for (std::size_t const first : seen_conditions) {
+    if (first == *seen_conditions.begin()) continue;
+    jumps.push_back({fmt::format("condition {} on", study.conditions[first].id), order_of_acquisition,
+                     whiten(jump_columns(study, predicted, [first](std::size_t c) { return c >= first; }))});
+  }
+  return jumps;
+}
+
+PatternSearch::PatternSearch(Patterns const& patterns, Projection const& projection, LargestNull null)
+    : unit_(projection(patterns.columns)), null_(std::move(null)) {
   Eigen::VectorXd const before = patterns.columns.colwise().norm();
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < unit_.cols(); ++k) {
@@ -184,7 +208,11 @@ PatternSearch::PatternSearch(Patterns const& patterns, Projection const& project
     ++kept;
   }
   unit_.conservativeResize(Eigen::NoChange, kept);
-  null_ = LargestNull(unit_, std::vector<bool>(static_cast<std::size_t>(kept), true), seed);
+}
+
+PatternSearch::PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed)
+    : PatternSearch(patterns, projection, LargestNull()) {
+  null_ = LargestNull(unit_, std::vector<bool>(static_cast<std::size_t>(unit_.cols()), true), seed);
 }
 
 std::vector<PatternFinding> PatternSearch::find(Eigen::VectorXd const& residual, double scale, std::size_t most) const {

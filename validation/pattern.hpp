@@ -20,20 +20,27 @@ struct Patterns {
 };
 Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten);
 
-/// What a label could do on its own: an offset of every quantity for each of its levels, whitened. Empty with one
-/// level.
-Eigen::MatrixXd label_columns(Study const& study, std::string const& label, Eigen::VectorXd const& predicted,
-                              Whitening const& whiten);
+/// A change that has no physics in it: an offset of each quantity from a condition on, or for one level of a label.
+struct Jump {
+  std::string words;        ///< "lot B", "condition 17 on"
+  std::string label;        ///< "lot"; "order of acquisition"
+  Eigen::MatrixXd columns;  ///< (observations, quantities), whitened
+};
+/// For every level of every label, and for every place in the order of acquisition.
+std::vector<Jump> jumps_of(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten);
+inline constexpr char const* order_of_acquisition = "order of acquisition";
 
 /// Looks for patterns in what calibration cannot do.
 class PatternSearch {
  public:
   PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed);
+  /// With the levels of another projection of the same patterns: a few columns more change them little.
+  PatternSearch(Patterns const& patterns, Projection const& projection, LargestNull null);
   /// Strongest first, with p over the whole family.
   /// \param residual  whitened and projected, measured minus predicted \param scale  sigma: residuals are divided by it
   std::vector<PatternFinding> find(Eigen::VectorXd const& residual, double scale, std::size_t most = 20) const;
   double critical(double family_error) const { return null_.critical(family_error); }
-  Eigen::MatrixXd const& unit_directions() const { return unit_; }  ///< (observations, patterns that are left)
+  LargestNull const& null() const { return null_; }
 
  private:
   Eigen::MatrixXd unit_;

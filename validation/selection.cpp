@@ -122,7 +122,7 @@ Adequacy adequacy_of(Workbench const& bench, Fit const& fit) {
       static_cast<double>(bench.frame.size() - project.rank()) - static_cast<double>(bench.frame.spared().size());
   if (found.dof > 0)
     found.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.dof), found.chi2));
-  PatternSearch const search(bench.patterns, project, bench.seed);
+  PatternSearch const search(bench.patterns, project, bench.pattern_null);
   found.patterns = search.find(left, std::sqrt(bench.sigma2));
   found.pattern_critical = search.critical(bench.thresholds.family_error);
   double const largest = found.patterns.empty() ? 0 : std::abs(found.patterns.front().z);

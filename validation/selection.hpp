@@ -46,6 +46,7 @@ struct Workbench {
   std::vector<Candidate> const& candidates;
   ResidualFrame const& frame;
   Patterns const& patterns;
+  LargestNull pattern_null;
   Thresholds const& thresholds;
   double sigma2 = 1;
   std::uint64_t seed = 0;

@@ -7,19 +7,10 @@
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <set>
+#include <optional>
 
 namespace layerloop::validation {
 namespace {
-
-constexpr double least_kept_beside_label = 0.1;  // of a signature, below which it varies with a label alone
-
-std::set<std::string> labels_of(Study const& study) {
-  std::set<std::string> all;
-  for (Condition const& c : study.conditions)
-    for (auto const& [label, level] : c.labels) all.insert(label);
-  return all;
-}
 
 Eigen::MatrixXd beside(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b) {
   Eigen::MatrixXd both(a.rows(), a.cols() + b.cols());
@@ -27,44 +18,36 @@ Eigen::MatrixXd beside(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b) {
   return both;
 }
 
-/// Columns of a label in the frame of the diagnosis.
-Eigen::MatrixXd of_label(Evidence const& evidence, std::string const& label) {
+std::vector<Jump> jumps_in(Evidence const& evidence) {
   ResidualFrame const& frame = evidence.bench.frame;
-  return frame.without_spared(label_columns(
-      frame.study(), label, at_observations(frame.study(), evidence.calibrated.prediction.value), frame.whiten()));
+  std::vector<Jump> jumps =
+      jumps_of(frame.study(), at_observations(frame.study(), evidence.calibrated.prediction.value), frame.whiten());
+  for (Jump& jump : jumps) jump.columns = frame.without_spared(jump.columns);
+  return jumps;
 }
 
-/// A label that could have brought about what speaks for the best candidate: its signature has next to nothing within
-/// the levels of the label, or the data within them do not bear it out.
-std::string confounding_label(Evidence const& evidence) {
-  Fit const& before = evidence.calibrated;
-  Fit const& after = evidence.selection.fit;
-  double const sigma = std::sqrt(evidence.bench.sigma2);
-  for (std::string const& label : labels_of(evidence.bench.frame.study())) {
-    Eigen::MatrixXd const columns = of_label(evidence, label);
-    if (columns.cols() == 0) continue;
-    Projection const plain = evidence.bench.projection(before);
-    Projection const project(evidence.bench.frame.size(), beside(before.jacobian, columns));
-    Eigen::VectorXd const change = evidence.bench.frame.without_spared(before.residual - after.residual);
-    double const whole = plain(change).squaredNorm(), within = project(change).squaredNorm();
-    if (within < least_kept_beside_label * whole) return label;
-    double const expected = std::sqrt(within) / sigma;
-    double const seen = project(change).col(0).dot(before.residual) / std::sqrt(within) / sigma;
-    if (expected > 5 && seen < 0.4 * expected) return label;
-  }
-  return "";
+Adequacy adequacy_with(Evidence const& evidence, Fit fit, Eigen::MatrixXd const& columns) {
+  fit.jacobian = beside(fit.jacobian, columns);
+  return adequacy_of(evidence.bench, fit);
 }
 
-/// A label whose levels alone explain everything, where no candidate did.
-std::string sufficient_label(Evidence const& evidence) {
-  for (std::string const& label : labels_of(evidence.bench.frame.study())) {
-    Eigen::MatrixXd const columns = of_label(evidence, label);
-    if (columns.cols() == 0) continue;
-    Fit wider = evidence.calibrated;
-    wider.jacobian = beside(wider.jacobian, columns);
-    if (adequacy_of(evidence.bench, wider).ok) return label;
+/// A change without physics that takes as much away as the candidates do: these data cannot tell one from the other.
+std::optional<Jump> rival_jump(Evidence const& evidence) {
+  for (Jump const& jump : jumps_in(evidence)) {
+    Adequacy const with = adequacy_with(evidence, evidence.calibrated, jump.columns);
+    double const numbers_more = evidence.selection.adequacy.dof - with.dof;
+    if (with.chi2 < evidence.selection.adequacy.chi2 + evidence.bench.thresholds.rival_gap - numbers_more) return jump;
   }
-  return "";
+  return std::nullopt;
+}
+
+/// A label one of whose levels explains everything by itself, where no candidate did.
+std::optional<Jump> sufficient_level(Evidence const& evidence) {
+  for (Jump const& jump : jumps_in(evidence)) {
+    if (jump.label == order_of_acquisition) continue;
+    if (adequacy_with(evidence, evidence.calibrated, jump.columns).ok) return jump;
+  }
+  return std::nullopt;
 }
 
 /// The condition without which no pattern is left, if there is one: not a pattern, then, but a reading gone wrong.
@@ -78,9 +61,8 @@ std::string lonely_condition(Evidence const& evidence, Fit const& fit) {
     if (rows.empty()) continue;
     Eigen::MatrixXd units = Eigen::MatrixXd::Zero(evidence.bench.frame.size(), static_cast<Eigen::Index>(rows.size()));
     for (std::size_t k = 0; k < rows.size(); ++k) units(rows[k], static_cast<Eigen::Index>(k)) = 1;
-    Fit wider = fit;
-    wider.jacobian = beside(fit.jacobian, evidence.bench.frame.without_spared(evidence.bench.frame.whiten()(units)));
-    if (adequacy_of(evidence.bench, wider).ok) return study.conditions[c].id;
+    Eigen::MatrixXd const own = evidence.bench.frame.without_spared(evidence.bench.frame.whiten()(units));
+    if (adequacy_with(evidence, fit, own).ok) return study.conditions[c].id;
   }
   return "";
 }
@@ -124,11 +106,12 @@ void verdict_without_candidate(Evidence const& evidence, Diagnosis& diagnosis) {
                       std::sqrt(evidence.noise.sigma2), evidence.noise.outliers.size()));
     return say(diagnosis, Verdict::CONSISTENT, "Model and measurements agree within their uncertainties.");
   }
-  if (std::string const label = sufficient_label(evidence); !label.empty())
-    return say(diagnosis, Verdict::CONFOUNDED,
-               fmt::format("What the model misses differs from {0} to {0} and not within: these data cannot tell a "
-                           "physical cause from the {0} ({1}).",
-                           label, top_patterns(now)));
+  if (auto const jump = sufficient_level(evidence))
+    return say(
+        diagnosis, Verdict::CONFOUNDED,
+        fmt::format("{0} differs, and nothing within the {1}s: these data cannot tell a physical cause from the {1} "
+                    "({2}).",
+                    jump->words, jump->label, top_patterns(now)));
   if (std::string const alone = lonely_condition(evidence, evidence.selection.fit); !alone.empty())
     return say(diagnosis, Verdict::NOISE,
                fmt::format("Condition {} alone does not fit; without it nothing needs a cause. Repeat it.", alone));
@@ -169,11 +152,11 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
   if (has_class(EffectClass::instrument))
     return say(diagnosis, Verdict::INSTRUMENT,
                fmt::format("The measuring is at fault: {}. Mend or calibrate it first.", names));
-  if (std::string const label = confounding_label(evidence); !label.empty())
+  if (auto const jump = rival_jump(evidence))
     return say(
         diagnosis, Verdict::CONFOUNDED,
-        fmt::format("{} would explain it, but what speaks for it varies with the {} alone: measure it within one {}.",
-                    names, label, label));
+        fmt::format("{} would explain it, but an offset of {} does so as well: measure it within one {}.", names,
+                    jump->words, jump->label == order_of_acquisition ? "session, in random order" : jump->label));
   std::vector<std::string> const all = members(diagnosis);
   if (all.size() > active_names(diagnosis).size())
     return say(diagnosis, Verdict::GROUP,
