@@ -168,6 +168,28 @@ TomlContent parse_toml(std::string_view text) {
   return content;
 }
 
+std::vector<TomlTable> parse_tables(std::string_view text) {
+  toml::table const root = parse_guarded(text);
+  std::vector<TomlTable> tables{{}};  // the first: what stands outside of any table
+  auto const add = [&](std::string_view name, toml::table const& table) {
+    TomlTable one{std::string(name), place_of(table.source()), {}};
+    for (auto const& [key, node] : table)
+      one.entries.push_back({one.name, std::string(key.str()), plain_value(node), place_of(key.source())});
+    tables.push_back(std::move(one));
+  };
+  for (auto const& [key, node] : root) {
+    if (node.is_table()) {
+      add(key.str(), *node.as_table());
+    } else if (node.is_array_of_tables()) {
+      for (toml::node const& item : *node.as_array()) add(key.str(), *item.as_table());
+    } else {
+      tables.front().entries.push_back({"", std::string(key.str()), plain_value(node), place_of(key.source())});
+    }
+  }
+  std::ranges::stable_sort(tables, {}, [](TomlTable const& table) { return table.place; });
+  return tables;
+}
+
 TomlValue parse_value(std::string_view text) {
   toml::table const parsed = parse_guarded(fmt::format("value = {}", text));
   return plain_value(*parsed.get("value"));

@@ -54,6 +54,16 @@ struct SyntaxFault {
 /// Hostile text (depth, control bytes, size) is turned away before toml++ sees it. \throws SyntaxFault
 TomlContent parse_toml(std::string_view text);
 
+/// One table, or one item of a list of tables.
+struct TomlTable {
+  std::string name;  ///< "study" of [study], "calibration" of [[calibration]]; "" outside of any table
+  Place place;
+  std::vector<TomlEntry> entries;
+};
+
+/// Reads tables of one level and lists of such tables, in the order of the file. \throws SyntaxFault
+std::vector<TomlTable> parse_tables(std::string_view text);
+
 /// One value as it stands behind the equals sign. \throws SyntaxFault
 TomlValue parse_value(std::string_view text);
 

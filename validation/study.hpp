@@ -37,6 +37,13 @@ struct Observation {
   Role role = Role::train;
 };
 
+/// A reading that is a word (track.regime): for comparing only.
+struct Category {
+  std::string id;
+  std::size_t observable = 0;  ///< index; a Prediction holds the place of the word in regime_words()
+  std::string word;
+};
+
 /// What a model has to predict: replicates share one.
 struct Observable {
   std::size_t condition = 0;
@@ -62,9 +69,10 @@ struct Study {
   std::filesystem::path folder, case_file;
   std::vector<Condition> conditions;      ///< in the order of acquisition
   std::vector<Observation> observations;  ///< in the order of acquisition; excluded ones are left out
-  std::vector<Observable> observables;
+  std::vector<Observable> observables;    ///< those of the observations first
   std::vector<CalibrationParameter> calibration;
-  std::vector<std::string> limits = {};  ///< what these data cannot tell, in words
+  std::vector<std::string> limits = {};   ///< what these data cannot tell, in words
+  std::vector<Category> categories = {};  ///< never in a covariance
 };
 
 }  // namespace layerloop::validation
