@@ -162,6 +162,7 @@ Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures s
       .fit = std::move(calibrated), .trials = {}, .signatures = std::move(signatures), .scores = {}, .adequacy = {}};
   selection.adequacy = adequacy_of(bench, selection.fit);
   selection.scores = score_candidates(bench, selection.fit, selection.signatures);
+  double const excess = selection.adequacy.chi2 - selection.adequacy.dof;
   while (static_cast<int>(selection.fit.active.size()) < bench.thresholds.most_effects) {
     std::vector<std::size_t> const tried = contenders(bench, selection.scores);
     bool const any = !tried.empty() && selection.scores.z[index(tried.front())] > selection.scores.critical;
@@ -169,6 +170,7 @@ Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures s
     std::vector<Trial> trials = trials_of(bench, selection.fit, selection.signatures, tried);
     double const gain = selection.fit.objective - trials.front().fit.objective;
     if (!(gain > std::pow(selection.scores.critical, 2))) break;
+    if (!selection.fit.active.empty() && gain < bench.thresholds.least_share * excess) break;
     if (bench.thresholds.refits) trials.front().fit = bench.refit().settled(std::move(trials.front().fit));
     selection.fit = trials.front().fit;
     selection.trials.push_back(std::move(trials));

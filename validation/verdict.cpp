@@ -146,10 +146,11 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
         fmt::format("No known effect explains this: {} takes {:.0f} % of the excess, a smooth correction {:.0f} %. "
                     "What is left looks like: {}.",
                     names, 100 * diagnosis.explained, 100 * evidence.smooth_explained, top_patterns(now)));
-  if (has_class(EffectClass::numerics))
+  bool const whole = adequate || diagnosis.explained > limit.whole;
+  if (whole && has_class(EffectClass::numerics))
     return say(diagnosis, Verdict::NUMERICS,
                fmt::format("The discretisation is at fault: {}. Refine it first.", names));
-  if (has_class(EffectClass::instrument))
+  if (whole && has_class(EffectClass::instrument))
     return say(diagnosis, Verdict::INSTRUMENT,
                fmt::format("The measuring is at fault: {}. Mend or calibrate it first.", names));
   if (auto const jump = rival_jump(evidence))
@@ -161,7 +162,7 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
   if (all.size() > active_names(diagnosis).size())
     return say(diagnosis, Verdict::GROUP,
                fmt::format("One of {{{}}} is missing; these data cannot tell which.", fmt::join(all, ", ")));
-  if (has_class(EffectClass::calibration))
+  if (whole && has_class(EffectClass::calibration))
     return say(diagnosis, Verdict::CALIBRATION, fmt::format("An input is off: {}. Measure it independently.", names));
   if (adequate) return say(diagnosis, Verdict::IDENTIFIED, fmt::format("{} is missing.", names));
   if (diagnosis.explained > limit.whole)

@@ -92,7 +92,7 @@ TEST(Diagnosis, of_twins_is_a_group) {
 
 TEST(Diagnosis, of_what_nobody_put_in_the_catalogue_names_nothing) {
   Diagnosis const found = diagnosis_of({.effect = "keyhole", .strength = 0.5}, true);
-  EXPECT_TRUE(found.verdict == Verdict::UNKNOWN || found.verdict == Verdict::PARTIAL) << found.sentence;
+  EXPECT_TRUE(found.verdict == Verdict::UNKNOWN || found.verdict == Verdict::PARTIAL) << found.sentence << found.explained << " " << found.chi2_before << " " << found.chi2_after << " " << found.patterns_after.front().z;
 }
 
 TEST(Diagnosis, of_cells_and_rulers_blocks_claims_of_physics) {
