@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "validation/largest_null.hpp"
 
@@ -12,6 +11,7 @@ namespace {
 
 constexpr double least_kept = 1e-3;      // of a signature's norm: below, calibration can do all of it
 constexpr double least_contender = 2.0;  // z from the signature: a refit may raise it
+constexpr double far_behind = 0.5;       // of the highest z: below, no refit brings a candidate to the front
 constexpr std::size_t most_twins = 3;    // that are refitted beside the contenders
 
 auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
@@ -21,14 +21,18 @@ bool is_active(Fit const& fit, std::size_t candidate) {
 }
 
 /// Those that are worth a refit: the highest scores, and the twins of the highest.
-std::vector<std::size_t> contenders(Workbench const& bench, CandidateScores const& scores) {
-  std::vector<std::size_t> order(bench.candidates.size());
-  std::iota(order.begin(), order.end(), 0U);
+std::vector<std::size_t> contenders(Workbench const& bench, CandidateScores const& scores,
+                                    std::vector<std::size_t> const& dropped) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < bench.candidates.size(); ++k)
+    if (std::ranges::find(dropped, k) == dropped.end()) order.push_back(k);
   std::ranges::stable_sort(order, [&](auto a, auto b) { return scores.z[index(a)] > scores.z[index(b)]; });
   std::vector<std::size_t> chosen;
   std::size_t twins = 0;
   for (std::size_t const k : order) {
-    if (scores.z[index(k)] < least_contender) break;
+    double const least =
+        chosen.empty() ? least_contender : std::max(least_contender, far_behind * scores.z[index(chosen.front())]);
+    if (scores.z[index(k)] < least) break;
     bool const is_twin =
         !chosen.empty() && scores.cosines(index(k), index(chosen.front())) > bench.thresholds.twin_cosine;
     if (chosen.size() - twins < static_cast<std::size_t>(bench.thresholds.refitted_candidates)) {
@@ -74,12 +78,13 @@ double score_of(Workbench const& bench, Fit const& fit, std::size_t active) {
 }
 
 /// Active candidates that the others have made superfluous go.
-void drop_superfluous(Workbench const& bench, Selection& selection) {
+void drop_superfluous(Workbench const& bench, Selection& selection, std::vector<std::size_t>& dropped) {
   for (std::size_t a = 0; a < selection.fit.active.size() && selection.fit.active.size() > 1;) {
     if (score_of(bench, selection.fit, a) >= bench.thresholds.drop_z) {
       ++a;
       continue;
     }
+    dropped.push_back(selection.fit.active[a]);
     selection.fit = bench.refit().improved(bench.refit().without(selection.fit, a));
     selection.trials.erase(selection.trials.begin() + static_cast<std::ptrdiff_t>(a));
   }
@@ -163,21 +168,26 @@ Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures s
   selection.adequacy = adequacy_of(bench, selection.fit);
   selection.scores = score_candidates(bench, selection.fit, selection.signatures);
   double const excess = selection.adequacy.chi2 - selection.adequacy.dof;
+  std::vector<std::size_t> dropped;  // what the others made superfluous does not come back
   while (static_cast<int>(selection.fit.active.size()) < bench.thresholds.most_effects) {
-    std::vector<std::size_t> const tried = contenders(bench, selection.scores);
+    std::vector<std::size_t> const tried = contenders(bench, selection.scores, dropped);
     bool const any = !tried.empty() && selection.scores.z[index(tried.front())] > selection.scores.critical;
     if (tried.empty() || (!any && selection.adequacy.ok)) break;
     std::vector<Trial> trials = trials_of(bench, selection.fit, selection.signatures, tried);
     double const gain = selection.fit.objective - trials.front().fit.objective;
     if (!(gain > std::pow(selection.scores.critical, 2))) break;
-    if (!selection.fit.active.empty() && gain < bench.thresholds.least_share * excess) break;
+    if (!selection.fit.active.empty() && gain < bench.thresholds.least_share * excess &&
+        !adequacy_of(bench, trials.front().fit).ok)
+      break;
     if (bench.thresholds.refits) trials.front().fit = bench.refit().settled(std::move(trials.front().fit));
     selection.fit = trials.front().fit;
     selection.trials.push_back(std::move(trials));
-    drop_superfluous(bench, selection);
+    drop_superfluous(bench, selection, dropped);
     selection.adequacy = adequacy_of(bench, selection.fit);
     if (selection.adequacy.ok) break;
-    selection.signatures = probe_candidates(bench.model, bench.candidates, bench.frame, selection.fit);
+    selection.scores = score_candidates(bench, selection.fit, selection.signatures);
+    probe_again(bench.model, bench.candidates, bench.frame, selection.fit, contenders(bench, selection.scores, dropped),
+                selection.signatures);
     selection.scores = score_candidates(bench, selection.fit, selection.signatures);
   }
   try_rivals_again(bench, selection);

@@ -30,39 +30,45 @@ double sampling_noise(ResidualFrame const& frame, Fit const& fit, Candidate cons
 
 }  // namespace
 
+namespace {
+
+void probe(Model& model, Candidate const& candidate, std::size_t k, ResidualFrame const& frame, Fit const& fit,
+           Signatures& all) {
+  auto const column = static_cast<Eigen::Index>(k);
+  double const room = candidate.largest - fit.point.strengths[column];
+  auto const at = [&](double scale) {
+    return probed(model, frame, fit, k, std::min(scale * candidate.prior_scale, room), candidate.prior_scale);
+  };
+  Probe found = at(1);
+  if (!found.answered) {
+    found = at(0.25);
+  } else if (!(found.column.norm() > least_change)) {
+    found = at(4);
+  }
+  if (!found.answered) {
+    all.not_testable[k] = "the model has no answer with it";
+  } else if (!(found.column.norm() > least_change)) {
+    all.not_testable[k] = "it changes nothing under these conditions";
+  } else {
+    all.columns.col(column) = found.column;
+    all.noise[k] = sampling_noise(frame, fit, candidate);
+  }
+}
+
+}  // namespace
+
 Signatures probe_candidates(Model& model, std::vector<Candidate> const& candidates, ResidualFrame const& frame,
                             Fit const& fit) {
   Signatures all{.columns = Eigen::MatrixXd::Zero(frame.size(), static_cast<Eigen::Index>(candidates.size())),
                  .noise = std::vector<double>(candidates.size()),
                  .not_testable = std::vector<std::string>(candidates.size())};
-  std::size_t const calibration = frame.study().calibration.size();
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    Candidate const& candidate = candidates[k];
-    auto const column = static_cast<Eigen::Index>(k);
-    if (auto const place = std::ranges::find(fit.active, k); place != fit.active.end()) {
-      all.columns.col(column) = fit.jacobian.col(static_cast<Eigen::Index>(calibration) + (place - fit.active.begin()));
-      continue;
-    }
-    double const room = candidate.largest - fit.point.strengths[column];
-    auto const at = [&](double scale) {
-      return probed(model, frame, fit, k, std::min(scale * candidate.prior_scale, room), candidate.prior_scale);
-    };
-    Probe probe = at(1);
-    if (!probe.answered) {
-      probe = at(0.25);
-    } else if (!(probe.column.norm() > least_change)) {
-      probe = at(4);
-    }
-    if (!probe.answered) {
-      all.not_testable[k] = "the model has no answer with it";
-    } else if (!(probe.column.norm() > least_change)) {
-      all.not_testable[k] = "it changes nothing under these conditions";
-    } else {
-      all.columns.col(column) = probe.column;
-      all.noise[k] = sampling_noise(frame, fit, candidate);
-    }
-  }
+  for (std::size_t k = 0; k < candidates.size(); ++k) probe(model, candidates[k], k, frame, fit, all);
   return all;
+}
+
+void probe_again(Model& model, std::vector<Candidate> const& candidates, ResidualFrame const& frame, Fit const& fit,
+                 std::vector<std::size_t> const& which, Signatures& signatures) {
+  for (std::size_t const k : which) probe(model, candidates[k], k, frame, fit, signatures);
 }
 
 }  // namespace layerloop::validation

@@ -16,8 +16,11 @@ struct Signatures {
 };
 
 /// Probes every candidate at its prior scale, further where it does nothing yet, nearer where the model has no answer.
-/// Those that are active in the fit have the columns of its Jacobian.
 Signatures probe_candidates(Model& model, std::vector<Candidate> const& candidates, ResidualFrame const& frame,
                             Fit const& fit);
+
+/// The same for some of them at another fit, where they stand for a little else.
+void probe_again(Model& model, std::vector<Candidate> const& candidates, ResidualFrame const& frame, Fit const& fit,
+                 std::vector<std::size_t> const& which, Signatures& signatures);
 
 }  // namespace layerloop::validation

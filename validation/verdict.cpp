@@ -67,6 +67,29 @@ std::string lonely_condition(Evidence const& evidence, Fit const& fit) {
   return "";
 }
 
+/// Readings without which calibration alone does, where each of them is out of all proportion: few and far, not a
+/// smooth pattern that they bend towards themselves. Empty where that is not enough.
+std::vector<OutlierFinding> sufficient_outliers(Evidence const& evidence) {
+  Workbench const& bench = evidence.bench;
+  auto const most = static_cast<std::size_t>(bench.thresholds.outlier_share * static_cast<double>(bench.frame.size()));
+  Fit fit = evidence.calibrated;
+  std::vector<OutlierFinding> found;
+  while (found.size() + bench.frame.spared().size() < most) {
+    Projection const project(bench.frame.size(), fit.jacobian);
+    Eigen::VectorXd const left = project(fit.residual), diagonal = project.diagonal();
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(left.size());
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      if (diagonal[i] > 0.05) z[i] = left[i] / std::sqrt(diagonal[i] * bench.sigma2);
+    Eigen::Index worst = 0;
+    if (!(z.cwiseAbs().maxCoeff(&worst) > bench.thresholds.outlier_z)) return {};
+    found.push_back({bench.frame.study().observations[static_cast<std::size_t>(worst)].id, z[worst]});
+    Eigen::MatrixXd const unit = Eigen::VectorXd::Unit(z.size(), worst);
+    fit.jacobian = beside(fit.jacobian, bench.frame.without_spared(bench.frame.whiten()(unit)));
+    if (adequacy_of(bench, fit).ok) return found;
+  }
+  return {};
+}
+
 std::string top_patterns(Adequacy const& adequacy) {
   std::vector<std::string> texts;
   for (PatternFinding const& pattern : adequacy.patterns)
@@ -84,6 +107,17 @@ std::vector<std::string> active_names(Diagnosis const& diagnosis) {
 void say(Diagnosis& diagnosis, Verdict verdict, std::string sentence) {
   diagnosis.verdict = verdict;
   diagnosis.sentence = std::move(sentence);
+}
+
+/// Whether single readings are all that does not fit.
+bool say_outliers(Evidence const& evidence, Diagnosis& diagnosis) {
+  std::vector<OutlierFinding> const found = sufficient_outliers(evidence);
+  if (found.empty()) return false;
+  diagnosis.outliers.insert(diagnosis.outliers.end(), found.begin(), found.end());
+  say(diagnosis, Verdict::NOISE,
+      fmt::format("{} of {} readings do not fit, and without them nothing needs a cause. Repeat them.",
+                  diagnosis.outliers.size(), evidence.bench.frame.size()));
+  return true;
 }
 
 /// Nothing was chosen: is there anything to explain, and what does it look like?
@@ -106,6 +140,7 @@ void verdict_without_candidate(Evidence const& evidence, Diagnosis& diagnosis) {
                       std::sqrt(evidence.noise.sigma2), evidence.noise.outliers.size()));
     return say(diagnosis, Verdict::CONSISTENT, "Model and measurements agree within their uncertainties.");
   }
+  if (say_outliers(evidence, diagnosis)) return;
   if (auto const jump = sufficient_level(evidence))
     return say(
         diagnosis, Verdict::CONFOUNDED,
@@ -140,7 +175,9 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
   };
   bool const adequate = now.ok || !limit.gates;
   bool const beaten = evidence.smooth_explained > diagnosis.explained + 0.1;
-  if (!adequate && (diagnosis.explained <= limit.part || beaten))
+  bool const weak = !adequate && (diagnosis.explained <= limit.part || beaten);
+  if (weak && say_outliers(evidence, diagnosis)) return;
+  if (weak)
     return say(
         diagnosis, diagnosis.explained <= limit.part ? Verdict::UNKNOWN : Verdict::PARTIAL,
         fmt::format("No known effect explains this: {} takes {:.0f} % of the excess, a smooth correction {:.0f} %. "
