@@ -132,7 +132,8 @@ ObservationTable table_of(Workbench const& bench, Fit const& base, Fit const& ca
   certain.u_sampling.setZero();
   certain.u_numerical.setZero();
   Eigen::VectorXd const data = covariance(study, certain).diagonal();
-  return {.measured = measured_values(study),
+  return {.rows = {},
+          .measured = measured_values(study),
           .base = at_observations(study, base.prediction.value),
           .calibrated = at_observations(study, calibrated.prediction.value),
           .final_model = at_observations(study, last.prediction.value),
@@ -196,6 +197,9 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   diagnosis.calibrated = calibrated.point;
   diagnosis.final_point = selection.fit.point;
   diagnosis.table = table_of(bench, base, calibrated, selection.fit, signatures);
+  for (std::size_t i = 0; i < given.observations.size(); ++i)
+    if (std::ranges::find(study.observations, given.observations[i].id, &Observation::id) != study.observations.end())
+      diagnosis.table.rows.push_back(i);
   if (!before.ok)
     diagnosis.smooth_explained =
         smooth_share(study, calibrated.residual, Projection(frame.size(), calibrated.jacobian), noise.sigma2);

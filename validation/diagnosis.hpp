@@ -82,6 +82,7 @@ struct OutlierFinding {
 
 /// Vectors by observation, for pictures and tables.
 struct ObservationTable {
+  std::vector<std::size_t> rows;  ///< of the study's observations: those that the model has an answer for
   Eigen::VectorXd measured, base, calibrated, final_model;  ///< [SI]
   Eigen::VectorXd u_data, u_model;                          ///< standard uncertainties [SI]
   Eigen::VectorXd residual_before, residual_after;          ///< projected, in units of their standard deviation

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "validation/explanation.hpp"
+
+namespace layerloop::validation {
+
+/// report.html of the verb explain: the verdict, what it rests on, and what to measure next.
+std::string explain_page(Explanation const& explained);
+
+}  // namespace layerloop::validation
