@@ -29,6 +29,7 @@ void add_bench(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);
 void add_calibrate(CLI::App& program, Action& chosen);
 void add_doctor(CLI::App& program, Action& chosen);
+void add_effect(CLI::App& program, Action& chosen);
 
 void add_case_options(CLI::App& verb, CaseOptions& options);
 /// Also sets the number of threads. Without a process, the case tells by itself (core/case_file.hpp).

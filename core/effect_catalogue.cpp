@@ -117,10 +117,10 @@ std::vector<Effect> heat_effects() {
       {"variable_conductivity", heat, physics, "true", 1, 0.3,
        "Conductivity over temperature; off: its value at the solidus.",
        "sources of the material's table", "thermal/effects/variable_conductivity.hpp"},
-      {"evaporation", heat, physics, "false", 10, 0.3,
+      {"evaporation", heat, physics, "false", 10, 0.5,
        "Heat carried off by metal vapour.",
        "Hertz-Knudsen; Knight, AIAA J. 17 (1979) 519", "thermal/effects/evaporation.cpp"},
-      {"keyhole", heat, physics, "false", 1, 0.3,
+      {"keyhole", heat, physics, "false", 1, 0.5,
        "Depression of the melt where the recoil of its vapour exceeds surface tension; light is traced on it anew at "
        "every cell that it can recede. The strength scales the depth that light sees.",
        "Kaplan, J. Phys. D 27 (1994) 1805; Semak & Matsunawa, J. Phys. D 30 (1997) 2541",
@@ -152,6 +152,10 @@ std::vector<Effect> heat_effects() {
 
 std::vector<Effect> solid_effects() {
   return {
+      {"shrinkage", solid, physics, "false", 2, 0.5,
+       "Melt levels as a liquid and shrinks as it freezes: the surface sinks where it was deep. The strength scales "
+       "the change of volume between liquidus and solidus.",
+       "mass balance", "coupling/effects/shrinkage.cpp"},
       {"denudation", solid, physics, "false", 1, 0.5,
        "Grains beside a track that the gas draws away after melting; the strength is the probability on its axis.",
        "Matthews et al., Acta Mater. 114 (2016) 33; Bidare et al., Acta Mater. 142 (2018) 107",

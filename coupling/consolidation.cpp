@@ -9,6 +9,7 @@
 #include "core/compensated_sum.hpp"
 #include "core/error.hpp"
 #include "core/grain_size.hpp"
+#include "coupling/effects/shrinkage.hpp"
 #include "coupling/grain_clearance.hpp"
 #include "coupling/melt_columns.hpp"
 #include "coupling/part_surface_cgal.hpp"
@@ -204,11 +205,13 @@ void check_mass(SolidField const& solid, double mass_before, Consolidation const
 }
 
 MeltedDown melt_down(SolidField& solid, PowderBed const& bed, std::vector<GrainCells>& grains, MeltedCells const& melt,
-                     double levelling_length, double density) {
+                     double levelling_length, Case const& checked) {
+  double const density = checked.material.density;
   std::vector<char> const melted = melted_on_lattice(solid, melt);
   MeltedDown down{.taken = half_or_more_melted(bed, grains, melted, solid.grid.cell_volume())};
   MeltColumns columns = liquid_and_rest(solid, grains, down.taken, melted, density);
   columns.molten_plate = molten_plate(solid, melt);
+  columns.expansion = liquid_expansion(checked);
   SettledMelt const settled = settle_melt(columns, std::max(levelling_length, solid.grid.cell));
   down.mean_height_change = settled.mean_height_change;
   add_metal(solid, settled.metal, density);
@@ -220,7 +223,7 @@ Consolidation consolidate(SolidField& solid, PowderBed& bed, TriangleSurface& su
   Consolidation figures;
   double const density = checked.material.density, mass_before = metal_mass(solid);
   auto grains = grains_near(solid, bed, checked, cells.grid);
-  MeltedDown const down = melt_down(solid, bed, grains, {melt.grid, melt.melted}, 0.5 * melt.pool.width, density);
+  MeltedDown const down = melt_down(solid, bed, grains, {melt.grid, melt.melted}, 0.5 * melt.pool.width, checked);
   CompensatedSum in_melted_cells;
   for (GrainCells const& grain : grains) in_melted_cells.add(grain.in_melted_cells);
   figures.melted_cell_mass = density * in_melted_cells.value();

@@ -57,9 +57,10 @@ struct MeltedDown {
 };
 
 /// Steps 1 and 2 of consolidate(): remelts the solid, adds the melted grains (which stay in the bed), and lets the
-/// liquid settle. \param grains  from grains_near(); their in_melted_cells are filled \param levelling_length [m]
+/// liquid settle and freeze. \param grains  from grains_near(); their in_melted_cells are filled
+/// \param levelling_length [m]
 MeltedDown melt_down(SolidField& solid, PowderBed const& bed, std::vector<GrainCells>& grains, MeltedCells const& melt,
-                     double levelling_length, double density);
+                     double levelling_length, Case const& checked);
 
 /// Removes the flagged grains from the bed and books their mass as melted (and trapped, if so). \return their mass [kg]
 enum class Fate { melted, trapped };

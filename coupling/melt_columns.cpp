@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/compensated_sum.hpp"
+#include "coupling/effects/shrinkage.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -34,7 +35,8 @@ class Columns {
   std::int64_t cell(std::int64_t column, std::int64_t k) const { return column + k * count_; }
 
   double solid(std::int64_t column, std::int64_t k) const { return k < layers_ ? melt_.solid[index(column, k)] : 0.0; }
-  double liquid(std::int64_t column, std::int64_t k) const { return melt_.liquid[index(column, k)]; }
+  double liquid(std::int64_t column, std::int64_t k) const { return melt_.expansion * melt_.liquid[index(column, k)]; }
+  double expansion() const { return melt_.expansion; }
   double room(std::int64_t column, std::int64_t k) const {
     return k < layers_ ? std::max(0.0, 1.0 - melt_.solid[index(column, k)] - melt_.grains[index(column, k)]) : 1.0;
   }
@@ -56,14 +58,16 @@ class Columns {
   std::int64_t nx_, ny_, layers_, count_;
 };
 
-/// Fills [base, end) from below, records where, and returns what found no room.
+/// Fills [base, end) from below, records where that freezes, and returns what found no room.
 double fill_up(Columns const& columns, std::int64_t column, std::int64_t base, std::int64_t end, double volume,
                std::vector<CellVolume>& metal) {
+  std::size_t const first = metal.size();
   for (std::int64_t k = base; k < end && volume > 0; ++k) {
     double const taken = std::min(volume, columns.room(column, k));
     if (taken > 0) metal.push_back({columns.cell(column, k), taken});
     volume -= taken;
   }
+  shrink(std::span(metal).subspan(first), columns.expansion());
   return volume;
 }
 
@@ -152,7 +156,8 @@ SettledMelt settle_melt(MeltColumns const& melt, double length) {
     OpenMelt const& top = open[static_cast<std::size_t>(column)];
     double const left = fill_up(columns, column, top.base, columns.layers(), top.volume, settled.metal);
     if (left > 0)
-      settled.metal.push_back({columns.cell(column, columns.layers()), left});  // beyond the grid's last layer
+      settled.metal.push_back(
+          {columns.cell(column, columns.layers()), left / melt.expansion});  // beyond the grid's last layer
   }
   return settled;
 }

@@ -11,12 +11,13 @@ struct MeltColumns {
   VoxelGrid grid;
   std::vector<double> solid;       ///< metal that did not melt
   std::vector<double> grains;      ///< grains that stay
-  std::vector<double> liquid;      ///< where it melted: may exceed the room there
+  std::vector<double> liquid;      ///< where it melted, as frozen volume: may exceed the room there
   std::vector<char> molten_plate;  ///< per column (i + nx * j): the plate's top melted, so that melt may flow in
+  double expansion = 1;            ///< volume of the liquid over that which it freezes to
 };
 
 struct SettledMelt {
-  std::vector<CellVolume> metal;  ///< where the liquid comes to rest; the same volume as the liquid
+  std::vector<CellVolume> metal;  ///< where the liquid freezes; the same volume in all
   double mean_height_change = 0;  ///< mean over the levelled columns of |surface after - before levelling| [m]
 };
 

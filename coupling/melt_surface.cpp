@@ -114,8 +114,7 @@ void MeltSurface::update(MeltState const& now) {
   if (melted != melted_) {
     melted_ = std::move(melted);
     SolidField solid = solid_;
-    MeltedDown const down =
-        melt_down(solid, bed_, grains_, {heated_, melted_}, checked_.laser.spot_radius(), checked_.material.density);
+    MeltedDown const down = melt_down(solid, bed_, grains_, {heated_, melted_}, checked_.laser.spot_radius(), checked_);
     left_ = bed_;
     std::vector<char> keep(down.taken.size());
     std::ranges::transform(down.taken, keep.begin(), [](char taken) { return taken == 0; });

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/grain_size.hpp"
 #include "coupling/melt_plate.hpp"
+#include "dem/contact_law.hpp"
 #include "dem/softening.hpp"
 #include "validation/candidates.hpp"
 #include "validation/held_strength.hpp"
@@ -22,14 +24,20 @@ Settings switched_on(Effect const& effect, double strength) {
 }
 
 /// What an effect stands for where the case gives it nothing to act with, at strength 1.
-constexpr double reference_cohesion = 9e4, at_modulus = 0.2e9;  ///< [J/m^3] of spread IN718; [Pa]
+constexpr double reference_bond_number = 10;  ///< pull-off force over the weight of a mean grain
 constexpr double reference_rolling_friction = 0.2;
 constexpr double reference_oxide = 50e-9;  ///< [m]
 
-/// Cohesion where there is none: SJKR2 with the pull-off force of the reference at this stiffness.
+/// Cohesion where there is none: SJKR2 whose pull-off force, which goes as the cube of the energy density, is
+/// `strength` times the reference for the grain of mean volume.
 Settings new_cohesion(double strength, Case const& base) {
-  double const energy = dem::scale_cohesion(reference_cohesion, base.contact.youngs_modulus / at_modulus).same_pull_off;
-  return {"contact.cohesion=sjkr2", set("contact.cohesion_energy_density", std::max(0.0, strength) * energy)};
+  ContactSettings contact = base.contact;
+  contact.cohesion = Cohesion::sjkr2;
+  contact.cohesion_energy_density = 1;
+  double const radius = 0.5 * std::cbrt(mean_grain_volume(base.powder) * 6 / std::numbers::pi);
+  double const wanted = std::max(0.0, strength) * reference_bond_number;
+  double const energy = std::cbrt(wanted / dem::bond_number(radius, base.material.density, contact));
+  return {"contact.cohesion=sjkr2", set("contact.cohesion_energy_density", energy)};
 }
 
 /// Fines join the powder: the grains that are fed become more, so that their mass stays.

@@ -148,7 +148,9 @@ std::string why_not(Effect const& effect, Reach const& reach, Case const& base) 
     case EffectStage::heat:
       return why_not_heat(effect, reach, base);
     case EffectStage::solid:
-      return {};
+      return effect.name == "shrinkage" && base.material.liquid_density.value.empty()
+                 ? "how dense the liquid is is not known: give material.NAME.liquid_density"
+                 : "";
   }
   return {};
 }

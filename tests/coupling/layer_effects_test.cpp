@@ -1,4 +1,4 @@
-// What the effects heat_accumulation and denudation hand from one layer to the next.
+// What the effects heat_accumulation, denudation and shrinkage hand from one layer to the next.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +7,8 @@
 #include "core/error.hpp"
 #include "coupling/effects/denudation.hpp"
 #include "coupling/effects/heat_accumulation.hpp"
+#include "coupling/effects/shrinkage.hpp"
+#include "coupling/melt_columns.hpp"
 #include "tests/coupling/solid_scenes.hpp"
 
 namespace layerloop::coupling {
@@ -146,6 +148,53 @@ TEST(Denudation, NullStrengthKeepsTheBed) {
     EXPECT_EQ(denude(bed, {track}, checked, 1).grains, 0);
     EXPECT_EQ(bed.id, rows_of_grains(400).id);
   }
+}
+
+/// A trench of two depths, level as a liquid: with heights h above its floors, sum h = e times the metal, and each
+/// column keeps h / e.
+TEST(Shrinkage, SurfaceSinksWithTheDepthBelowItAndMassStays) {
+  constexpr int nx = 12, nz = 20, shallow = 14, deep = 4;
+  auto const trench = [&](double expansion) {
+    MeltColumns melt{{Vec3::Zero(), 5 * um, {nx, 1, nz}}, {}, {}, {}, std::vector<char>(nx, 1)};
+    for (auto* values : {&melt.solid, &melt.grains, &melt.liquid}) values->assign(nx * nz, 0.0);
+    for (std::int64_t c = 0; c < melt.grid.size(); ++c) {
+      auto const [i, j, k] = melt.grid.coordinates(c);
+      int const floor = i < nx / 2 ? shallow : deep;
+      (k < floor ? melt.solid : melt.liquid)[static_cast<std::size_t>(c)] = k < 17 ? 1.0 : 0.0;
+    }
+    melt.expansion = expansion;
+    return melt;
+  };
+  auto const heights = [&](double expansion) {
+    std::vector<double> column(nx, 0.0);
+    for (CellVolume const& m : settle_melt(trench(expansion), 400 * um).metal)
+      column[static_cast<std::size_t>(m.cell % nx)] += m.volume;
+    return column;
+  };
+  double const e = 1.06, metal = 6 * (17 - shallow) + 6 * (17 - deep);
+  double const level = (e * metal + 6 * shallow + 6 * deep) / nx;
+  std::vector<double> const frozen = heights(e);
+  double sum = 0;
+  for (int i = 0; i < nx; ++i) {
+    double const floor = i < nx / 2 ? shallow : deep;
+    EXPECT_NEAR(frozen[static_cast<std::size_t>(i)], (level - floor) / e, 1e-3) << i;
+    sum += frozen[static_cast<std::size_t>(i)];
+  }
+  EXPECT_NEAR(sum, metal, 1e-12 * metal);
+  for (double const height : heights(1)) EXPECT_TRUE(height == 17 - shallow || height == 17 - deep) << height;
+}
+
+TEST(Shrinkage, IsThatOfTheDensitiesAndNothingWithoutTheEffect) {
+  Case checked = small_case();
+  checked.material = built_in_materials().at("316L");
+  EXPECT_EQ(liquid_expansion(checked), 1);
+  checked.effects["shrinkage"] = {true, 1, {}};
+  EXPECT_NEAR(liquid_expansion(checked), 7107.3 / 6936, 1e-12);  // Pichler et al., Int. J. Thermophys. 41 (2020)
+  checked.effects["shrinkage"].strength = 0;
+  EXPECT_EQ(liquid_expansion(checked), 1);
+  checked.effects["shrinkage"].strength = 1;
+  checked.material.liquid_density = {};
+  EXPECT_THROW(liquid_expansion(checked), InputError);
 }
 
 }  // namespace

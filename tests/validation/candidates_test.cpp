@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "core/case_file.hpp"
@@ -142,15 +144,23 @@ TEST(Candidates, ClassTellsWhetherTheCaseHasTheEffect) {
             "effects.cohesion.strength=1.5");
 }
 
-/// The same pull-off force at any stiffness: energy density goes as E^(2/3).
-TEST(Candidates, NewCohesionIsThatOfTheReferenceAtTheStiffnessOfTheCase) {
-  Case const soft = read(trials[2]), stiff = read(trials[2], {"contact.youngs_modulus=1.6e9"});
+/// Pull-off force of SJKR2 (16 pi^3/3) k^3 R^2 / E^2, R the reduced radius and E the reduced modulus: ten weights of
+/// the grain of mean volume at strength 1, whatever the stiffness.
+TEST(Candidates, NewCohesionIsABondNumberAtAnyStiffness) {
   Candidate const c{"cohesion", EffectStage::dem};
-  auto const energy = [&](Case const& base, double strength) {
-    return read(trials[2], settings_of(c, strength, base)).contact.cohesion_energy_density;
-  };
-  EXPECT_DOUBLE_EQ(energy(soft, 0.5), 45e3);
-  EXPECT_NEAR(energy(stiff, 1), 4 * 90e3, 1e-6);
+  for (char const* modulus : {"0.2e9", "1.6e9"}) {
+    Case const base = read(trials[2], {std::string("contact.youngs_modulus=") + modulus});
+    double volume = 0;
+    for (std::size_t i = 0; i < base.powder.diameters.size(); ++i)
+      volume += base.powder.fractions[i] * std::numbers::pi / 6 * std::pow(base.powder.diameters[i], 3);
+    double const r = std::cbrt(volume * 3 / (4 * std::numbers::pi)), weight = base.material.density * volume * 9.81;
+    double const E = 0.5 * base.contact.youngs_modulus / (1 - 0.3 * 0.3);
+    for (double const strength : {0.5, 1.0, 3.0}) {
+      double const k = read(trials[2], settings_of(c, strength, base)).contact.cohesion_energy_density;
+      double const force = 16 * std::pow(std::numbers::pi, 3) / 3 * k * k * k * std::pow(0.5 * r, 2) / (E * E);
+      EXPECT_NEAR(force / weight, 10 * strength, 0.01 * strength);
+    }
+  }
 }
 
 /// Powder keeps its mass when fines join it.
