@@ -73,7 +73,7 @@ std::vector<Instrument> const& instruments() {
 }
 
 struct Place {
-  std::optional<int> layer;
+  int layer;
   double x, y;
 };
 
@@ -117,11 +117,8 @@ Study analytic_design(std::uint64_t seed) {
   for (std::size_t c = 0; c < conditions; ++c) {
     auto const draw = uniform4(seed, RandomStream::blind_design, c, 9);
     bool const powder = study.conditions[c].inputs.contains("machine.layer_thickness");
-    Place const place{powder ? std::optional(draw[0] < 0.4   ? 1
-                                             : draw[0] < 0.7 ? 5
-                                                             : 20)
-                             : std::nullopt,
-                      1e-3 * std::round(120 * draw[1] - 60), 1e-3 * std::round(120 * draw[2] - 60)};
+    int const layer = !powder || draw[0] < 0.4 ? 1 : draw[0] < 0.7 ? 5 : 20;
+    Place const place{layer, 1e-3 * std::round(120 * draw[1] - 60), 1e-3 * std::round(120 * draw[2] - 60)};
     Role const role = rank[c] == 0 ? Role::holdout : Role::train;
     for (std::size_t i = 0; i < instruments().size(); ++i)
       if (powder || !instruments()[i].powder_only) add_rows(study, seed, c, place, i, role);

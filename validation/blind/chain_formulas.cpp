@@ -42,7 +42,7 @@ void spread(ChainInputs const& in, ChainStrengths const& s, ChainState& state) {
   packing *= std::exp(-0.04 * s[electrostatic_charge] * (1 - 0.5 / grains));
   open *= std::exp(-0.4 * s[electrostatic_charge]);  // like charges spread out
   packing *= 1 - 0.10 * s[gas_drag] * speed * speed / (4 + speed * speed);
-  packing *= 1 + 0.08 * s[blade_vibration] / (1 + s[blade_vibration] + 2 * speed);  // shakes a grain's length
+  packing *= 1 + 0.05 * std::log1p(s[blade_vibration] / (1 + 2 * speed));  // compaction by taps: Knight et al. 1995
   packing *= 1 + 0.03 * s[youngs_modulus] * std::pow(speed, 0.3);
   packing /= 1 + 0.25 * s[shrinkage] * (1 - std::exp(-0.5 * (in.layer - 1))) / grains;
   state.relative_density = packing;

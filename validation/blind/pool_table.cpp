@@ -12,7 +12,7 @@
 namespace layerloop::validation {
 namespace {
 
-constexpr std::size_t speeds = 22, excesses = 40;
+constexpr std::size_t speeds = 28, excesses = 48;
 constexpr double first_speed = -1.0, last_speed = 4.6;  // ln of the dimensionless speed
 constexpr double last_excess = 6.5;                     // ln of the power over that which just melts
 
@@ -22,7 +22,11 @@ double peak(double speed, double side, double down) {
   thermal::ConstantMetal const metal{.conductivity = 1, .heat_capacity = 1, .melting_point = 1};
   double const reach = side * side + down * down;
   auto const colder = [&](double x) { return -thermal::eagar_tsai_temperature(beam, metal, {x, side, down}); };
-  return -boost::math::tools::brent_find_minima(colder, -3 - speed * reach, 1.0, 24).second;
+  // Under the beam and far behind it there may be a maximum each.
+  double const behind = -2 - speed * reach, split = -0.4 - 0.15 * speed * reach;
+  using boost::math::tools::brent_find_minima;
+  return -std::min(brent_find_minima(colder, behind, split, 16).second,
+                   brent_find_minima(colder, split, 1.0, 16).second);
 }
 
 using Row = std::array<double, excesses>;
@@ -35,7 +39,7 @@ struct Table {
 /// ln(extent^2 / excess) at equal steps of the excess, from peaks at growing distances.
 Row extents(double speed, double on_track, bool down) {
   std::vector<double> excess, value;
-  for (double s = 0.03; excess.empty() || excess.back() < last_excess; s *= 1.05) {
+  for (double s = 0.03; excess.empty() || excess.back() < last_excess; s *= 1.08) {
     excess.push_back(on_track - std::log(down ? peak(speed, 0, s) : peak(speed, s, 0)));
     value.push_back(std::log(s * s / excess.back()));
   }
