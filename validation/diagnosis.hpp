@@ -29,7 +29,7 @@ std::string const& name_of(Verdict verdict);
 
 /// Frozen on a development set; docs/find-the-missing-effect.md tells how. Nothing else in the diagnosis can be tuned.
 struct Thresholds {
-  double family_error = 0.01;      ///< of any false candidate, and of any false pattern
+  double family_error = 0.005;     ///< of any false candidate, and of any false pattern
   double adequate_p = 1e-3;        ///< of chi2 after
   double rival_gap = 6;            ///< of -2 ln L, within which rivals are one group
   double drop_z = 2.5;             ///< below it an active effect is dropped

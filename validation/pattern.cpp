@@ -14,18 +14,24 @@
 namespace layerloop::validation {
 namespace {
 
-/// A number that every observation has, over which residuals may vary. Not a number: outside of the pattern.
+/// A number that observations have, over which residuals may vary.
 struct Variable {
   std::string words;  ///< "rises with laser.power"
   std::vector<double> values;
   bool is_level = false;  ///< 0 or 1: no products of it
 };
 
-/// To mean 0 and largest 1, so that products are of shapes and not of sizes; false where it does not vary.
+/// To mean 0 and largest 1, so that products are of shapes and not of sizes; 0 where there is no value (a bare plate
+/// has no layer thickness). False where it does not vary.
 bool centre(std::vector<double>& values) {
-  double const mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  double largest = 0;
-  for (double& v : values) v -= mean, largest = std::max(largest, std::abs(v));
+  double sum = 0, count = 0, largest = 0;
+  for (double const v : values)
+    if (std::isfinite(v)) sum += v, count += 1;
+  double const mean = sum / std::max(1.0, count);
+  for (double& v : values) {
+    v = std::isfinite(v) ? v - mean : 0.0;
+    largest = std::max(largest, std::abs(v));
+  }
   if (!(largest > 1e-12 * std::abs(mean))) return false;
   for (double& v : values) v /= largest;
   return true;
@@ -53,8 +59,7 @@ class Variables {
   Condition const& of(Observation const& seen) const { return study_.conditions[seen.condition]; }
 
   void add_line(std::string const& name, std::vector<double> values) {
-    if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); }) && centre(values))
-      all.push_back({name, std::move(values)});
+    if (centre(values)) all.push_back({name, std::move(values)});
   }
 
   void add_inputs() {

@@ -161,7 +161,7 @@ Fit Refit::improved(Fit fit) const {
 }
 
 Fit Refit::settled(Fit fit) const {
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < 2; ++round) {
     double const before = fit.objective;
     fit.jacobian = differences(fit);
     fit = improved(std::move(fit));

@@ -184,8 +184,8 @@ Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures s
     selection.trials.push_back(std::move(trials));
     drop_superfluous(bench, selection, dropped);
     selection.adequacy = adequacy_of(bench, selection.fit);
-    if (selection.adequacy.ok) break;
     selection.scores = score_candidates(bench, selection.fit, selection.signatures);
+    if (selection.adequacy.ok && !(selection.scores.z.maxCoeff() > selection.scores.critical)) break;
     probe_again(bench.model, bench.candidates, bench.frame, selection.fit, contenders(bench, selection.scores, dropped),
                 selection.signatures);
     selection.scores = score_candidates(bench, selection.fit, selection.signatures);

@@ -7,10 +7,14 @@
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <set>
 
 namespace layerloop::validation {
 namespace {
+
+constexpr double alone_z = 5;  // of one or two readings, that may as well be the tip of a pattern
 
 Eigen::MatrixXd beside(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b) {
   Eigen::MatrixXd both(a.rows(), a.cols() + b.cols());
@@ -31,23 +35,40 @@ Adequacy adequacy_with(Evidence const& evidence, Fit fit, Eigen::MatrixXd const&
   return adequacy_of(evidence.bench, fit);
 }
 
-/// A change without physics that takes as much away as the candidates do: these data cannot tell one from the other.
-std::optional<Jump> rival_jump(Evidence const& evidence) {
-  for (Jump const& jump : jumps_in(evidence)) {
-    Adequacy const with = adequacy_with(evidence, evidence.calibrated, jump.columns);
-    double const numbers_more = evidence.selection.adequacy.dof - with.dof;
-    if (with.chi2 < evidence.selection.adequacy.chi2 + evidence.bench.thresholds.rival_gap - numbers_more) return jump;
-  }
-  return std::nullopt;
+/// What a jump reaches, counted against it the numbers that it fits and how many jumps of its kind were tried
+/// (Akaike; Schwarz). By `before`, that of the calibrated model.
+double jump_score(Evidence const& evidence, Jump const& jump, std::vector<Jump> const& all) {
+  Adequacy const with = adequacy_with(evidence, evidence.calibrated, jump.columns);
+  auto const same_kind = std::ranges::count(all, jump.label, &Jump::label);
+  return with.chi2 + 2 * (evidence.before.dof - with.dof) + 2 * std::log(static_cast<double>(same_kind));
 }
 
-/// A label one of whose levels explains everything by itself, where no candidate did.
-std::optional<Jump> sufficient_level(Evidence const& evidence) {
-  for (Jump const& jump : jumps_in(evidence)) {
-    if (jump.label == order_of_acquisition) continue;
-    if (adequacy_with(evidence, evidence.calibrated, jump.columns).ok) return jump;
+/// A change without physics that takes as much away as the candidates do: these data cannot tell one from the other. A
+/// label is a cause that is known to be there; one that only the order of acquisition tells must do better.
+std::optional<Jump> rival_jump(Evidence const& evidence) {
+  double const named = evidence.selection.adequacy.chi2 + 2 * (evidence.before.dof - evidence.selection.adequacy.dof);
+  std::vector<Jump> const all = jumps_in(evidence);
+  std::optional<Jump> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Jump const& jump : all) {
+    double const score = jump_score(evidence, jump, all);
+    double const allowed = jump.label == order_of_acquisition ? named - evidence.bench.thresholds.rival_gap
+                                                              : named + evidence.bench.thresholds.rival_gap;
+    if (score < std::min(least, allowed)) best = jump, least = score;
   }
-  return std::nullopt;
+  return best;
+}
+
+/// The label one of whose levels explains everything best by itself, where no candidate did.
+std::optional<Jump> sufficient_level(Evidence const& evidence) {
+  std::vector<Jump> const all = jumps_in(evidence);
+  std::optional<Jump> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Jump const& jump : all) {
+    if (jump.label == order_of_acquisition || !adequacy_with(evidence, evidence.calibrated, jump.columns).ok) continue;
+    if (double const score = jump_score(evidence, jump, all); score < least) best = jump, least = score;
+  }
+  return best;
 }
 
 /// The condition without which no pattern is left, if there is one: not a pattern, then, but a reading gone wrong.
@@ -74,6 +95,7 @@ std::vector<OutlierFinding> sufficient_outliers(Evidence const& evidence) {
   auto const most = static_cast<std::size_t>(bench.thresholds.outlier_share * static_cast<double>(bench.frame.size()));
   Fit fit = evidence.calibrated;
   std::vector<OutlierFinding> found;
+  std::set<std::pair<std::string, bool>> kinds;  // quantity and sign: all alike is a pattern
   while (found.size() + bench.frame.spared().size() < most) {
     Projection const project(bench.frame.size(), fit.jacobian);
     Eigen::VectorXd const left = project(fit.residual), diagonal = project.diagonal();
@@ -82,10 +104,15 @@ std::vector<OutlierFinding> sufficient_outliers(Evidence const& evidence) {
       if (diagonal[i] > 0.05) z[i] = left[i] / std::sqrt(diagonal[i] * bench.sigma2);
     Eigen::Index worst = 0;
     if (!(z.cwiseAbs().maxCoeff(&worst) > bench.thresholds.outlier_z)) return {};
-    found.push_back({bench.frame.study().observations[static_cast<std::size_t>(worst)].id, z[worst]});
+    Observation const& seen = bench.frame.study().observations[static_cast<std::size_t>(worst)];
+    found.push_back({seen.id, z[worst]});
+    kinds.insert({seen.quantity, z[worst] > 0});
     Eigen::MatrixXd const unit = Eigen::VectorXd::Unit(z.size(), worst);
     fit.jacobian = beside(fit.jacobian, bench.frame.without_spared(bench.frame.whiten()(unit)));
-    if (adequacy_of(bench, fit).ok) return found;
+    if (!adequacy_of(bench, fit).ok) continue;
+    bool const lopsided = found.size() > 2 && kinds.size() == 1;
+    bool const far = found.size() > 2 || std::abs(found.back().z) > alone_z;
+    return lopsided || !far ? std::vector<OutlierFinding>{} : found;
   }
   return {};
 }
@@ -175,7 +202,9 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
   };
   bool const adequate = now.ok || !limit.gates;
   bool const beaten = evidence.smooth_explained > diagnosis.explained + 0.1;
-  bool const weak = !adequate && (diagnosis.explained <= limit.part || beaten);
+  // As many effects as may be, and still not enough: they share out the shape of something else among them.
+  bool const patchwork = static_cast<int>(evidence.selection.fit.active.size()) >= limit.most_effects;
+  bool const weak = !adequate && (diagnosis.explained <= limit.part || beaten || patchwork);
   if (weak && say_outliers(evidence, diagnosis)) return;
   if (weak)
     return say(
@@ -183,11 +212,10 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
         fmt::format("No known effect explains this: {} takes {:.0f} % of the excess, a smooth correction {:.0f} %. "
                     "What is left looks like: {}.",
                     names, 100 * diagnosis.explained, 100 * evidence.smooth_explained, top_patterns(now)));
-  bool const whole = adequate || diagnosis.explained > limit.whole;
-  if (whole && has_class(EffectClass::numerics))
+  if (adequate && has_class(EffectClass::numerics))
     return say(diagnosis, Verdict::NUMERICS,
                fmt::format("The discretisation is at fault: {}. Refine it first.", names));
-  if (whole && has_class(EffectClass::instrument))
+  if (adequate && has_class(EffectClass::instrument))
     return say(diagnosis, Verdict::INSTRUMENT,
                fmt::format("The measuring is at fault: {}. Mend or calibrate it first.", names));
   if (auto const jump = rival_jump(evidence))
@@ -196,13 +224,14 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
         fmt::format("{} would explain it, but an offset of {} does so as well: measure it within one {}.", names,
                     jump->words, jump->label == order_of_acquisition ? "session, in random order" : jump->label));
   std::vector<std::string> const all = members(diagnosis);
-  if (all.size() > active_names(diagnosis).size())
+  bool const whole = adequate || diagnosis.explained > limit.whole;
+  if (whole && all.size() > active_names(diagnosis).size())
     return say(diagnosis, Verdict::GROUP,
                fmt::format("One of {{{}}} is missing; these data cannot tell which.", fmt::join(all, ", ")));
-  if (whole && has_class(EffectClass::calibration))
+  if (adequate && has_class(EffectClass::calibration))
     return say(diagnosis, Verdict::CALIBRATION, fmt::format("An input is off: {}. Measure it independently.", names));
   if (adequate) return say(diagnosis, Verdict::IDENTIFIED, fmt::format("{} is missing.", names));
-  if (diagnosis.explained > limit.whole)
+  if (whole && !has_class(EffectClass::instrument) && !has_class(EffectClass::calibration))
     return say(diagnosis, Verdict::IDENTIFIED_FORM_IMPERFECT,
                fmt::format("{} is missing; its form here is not quite that of the measurements ({}).", names,
                            top_patterns(now)));
