@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev petsc-dev libpetsc-real-dev
-  libembree-dev libtbb-dev libcgal-dev libeigen3-dev libboost-dev libnlopt-dev libsodium-dev
+  libembree-dev libtbb-dev libcgal-dev libeigen3-dev libboost-dev libnlopt-dev libsodium-dev libmuparser-dev
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libpng-dev librandom123-dev libxxhash-dev)
 if [ "${1:-}" = test ]; then
   packages+=(liggghts lammps libgtest-dev libgmock-dev python3-h5py python3-numpy python3-vtk9)

@@ -9,6 +9,7 @@
 #include "core/communicator.hpp"
 #include "core/error.hpp"
 #include "core/progress.hpp"
+#include "core/user_effect.hpp"
 #include "thermal/petsc_session.hpp"
 
 namespace layerloop {
@@ -24,9 +25,9 @@ int end_with(Communicator const& comm, ExitCode code, std::string const& message
   return static_cast<int>(code);
 }
 
-/// Threads that wait for one another burn the processor by default, for milliseconds: on a machine with other work on it
-/// most of the time goes there. Some ten microseconds bridge the gaps between parallel loops. OpenMP reads this before
-/// main, so the program starts itself once more; where that fails it goes on as it is.
+/// Threads that wait for one another burn the processor by default, for milliseconds: on a machine with other work on
+/// it most of the time goes there. Some ten microseconds bridge the gaps between parallel loops. OpenMP reads this
+/// before main, so the program starts itself once more; where that fails it goes on as it is.
 void wait_briefly(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "1000", 1);
@@ -57,6 +58,11 @@ int main(int argc, char** argv) {
                    "layerloop");
   program.require_subcommand(1);
   program.set_version_flag("--version", LAYERLOOP_VERSION);
+  program.fallthrough();  // the options of the program may follow the verb
+  std::vector<std::string> libraries;
+  program.add_option("--plugin", libraries, "library of effects to load (core/user_effect.hpp; may be repeated)")
+      ->type_name("LIB.so")
+      ->expected(1);
   apps::Action action;
   apps::add_run(program, action);
   apps::add_spread(program, action);
@@ -74,5 +80,8 @@ int main(int argc, char** argv) {
   }
   catch_stop_signals();
   thermal::PetscSession const session;
-  return perform(action);
+  return perform([&] {
+    for (std::string const& library : libraries) load_plugin(library);
+    action();
+  });
 }

@@ -183,7 +183,7 @@ struct HeatSettings {
   HeatSolver solver = HeatSolver::automatic;
   double powder_contact_conductivity = 0;  ///< across faces between different grains [W/(m K)]: gas and point contacts
   Gas gas = Gas::argon;
-  double gas_pressure = 101325;  ///< [Pa]
+  double gas_pressure = 101325;            ///< [Pa]
   std::string pool_isotherm = "liquidus";  ///< "liquidus", "solidus" or a temperature as one would write it
 
   /// `pool_isotherm` [K]. \throws InputError  it is none of these
@@ -245,6 +245,15 @@ struct EffectSettings {
   std::map<std::string, double> parameters = {};  ///< SI
 };
 
+/// One `[modifiers.NAME]` table: an effect of the user's as a formula (core/modifier.hpp).
+struct ModifierSettings {
+  bool enabled = true;
+  double strength = 1;
+  std::string target;      ///< what it changes
+  std::string expression;  ///< by what
+  double prior_scale = 0.5, largest_strength = 10;
+};
+
 struct Case {
   std::string name;
   Process process = Process::melting;
@@ -262,6 +271,7 @@ struct Case {
   AbsorbSettings absorb;
   MeltSettings melt;
   std::map<std::string, EffectSettings> effects;  ///< every known effect, enabled or not
+  std::map<std::string, ModifierSettings> modifiers = {};
   Material material;                       ///< the powder's, overrides applied; substrate and part are the same metal
   std::vector<Material> admixtures;        ///< the others of powder.mixture
   std::optional<Material> floor_material;  ///< of optics.floor, where that is a metal

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/grain_size.hpp"
+#include "core/modifier.hpp"
 #include "core/rayleigh_time.hpp"
 #include "core/units.hpp"
 
@@ -37,6 +38,7 @@ class CaseChecks {
     effects();
     time_step();
     energy_ledger();
+    modifiers();
     material();
     calibrate();
     if (c_.has_light()) light();
@@ -214,11 +216,34 @@ class CaseChecks {
     if (c_.contact.cohesion == Cohesion::jkr) apart = "contact.cohesion = \"jkr\"";
     for (char const* effect : {"capillary_bridge", "electrostatic_charge"})
       if (c_.effect_strength(effect) > 0) apart = effect;
+    for (ActiveUserEffect const& active : active_user_effects(c_.effects))
+      if (dynamic_cast<PairAttraction const*>(active.effect)) apart = "an effect of a library";
     if (!c_.admixtures.empty() || !c_.bodies.empty() || !c_.pairs.empty())
       report("run.energy_ledger",
              "= true (none is kept for materials of their own: [powder.mixture], [contact.A]) leave one of them out");
     if (apart) report("run.energy_ledger", "= true (none is kept with {}) leave one of them out", apart);
     if (!c_.has_machine()) report("run.energy_ledger", "= true (none is kept while calibrating) leave it out");
+  }
+
+  void modifiers() const {
+    for (auto const& [name, modifier] : c_.modifiers) {
+      std::string const table = "modifiers." + name, key = table + ".expression";
+      if (!known({(table + ".target").c_str(), key.c_str()})) continue;
+      if (effect_catalogue_has(name)) {
+        origin_.report(table,
+                       fmt::format("[{}] has the name of an effect (both would be called {}) rename it", table, name));
+        continue;
+      }
+      try {
+        Expression const formula(modifier.expression, variables_of(modifier.target));
+      } catch (InputError const& fault) {
+        origin_.report(key, fmt::format("{}: {}", key, fault.what()));
+      }
+    }
+  }
+
+  static bool effect_catalogue_has(std::string const& name) {
+    return std::ranges::find(effect_catalogue(), name, &Effect::name) != effect_catalogue().end();
   }
 
   void machine() const {

@@ -23,7 +23,7 @@ bool is_material(std::string const& table) { return table.starts_with("material.
 
 bool is_table(std::string const& name) {
   std::string const family = family_of(name);
-  return is_material(name) || name == "material" || name == "effects" || family != name ||
+  return is_material(name) || name == "material" || name == "effects" || name == "modifiers" || family != name ||
          std::find(case_tables().begin(), case_tables().end(), name) != case_tables().end();
 }
 
@@ -62,6 +62,7 @@ class CaseReader {
     if (case_.melt.bed == MeltedBed::automatic)
       case_.melt.bed = tables_.contains("machine") ? MeltedBed::spread : MeltedBed::plate;
     read_mixture();
+    read_modifiers();
     read_materials();
     report_missing();
     check_case(case_, {[this](std::string const& key) { return !unsound_.contains(key); },
@@ -170,6 +171,19 @@ class CaseReader {
       if (entry.table != "powder.mixture") continue;
       fill(mixture_row(entry.key), entry.table, case_);
       if (unsound_.contains(name)) unsound_.insert("powder.mixture");
+    }
+  }
+
+  void read_modifiers() {
+    for (auto const& [table, place] : tables_) {
+      if (!table.starts_with("modifiers.")) continue;
+      for (CaseKey const& row : modifier_rows(table.substr(10))) {
+        fill(row, table, case_);
+        if (unsound_.contains(name_of(row)) || row.need != Need::always || written_.contains(name_of(row))) continue;
+        absent_.pop_back();  // the row is not of the schema
+        unsound_.insert(name_of(row));
+        report(place, fmt::format("missing key \"{}\" in [{}] ({})", row.key, table, row.sentence));
+      }
     }
   }
 

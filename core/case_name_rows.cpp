@@ -1,8 +1,10 @@
-// Rows of the tables that have names of materials in their own: [powder.mixture], [contact.A], [contact.A.B].
+// Rows of the tables that have names in their own: [powder.mixture], [contact.A], [contact.A.B] of materials,
+// [modifiers.NAME].
 #include <algorithm>
 #include <array>
 
 #include "core/case_schema.hpp"
+#include "core/modifier.hpp"
 
 namespace layerloop {
 using D = Dimension;
@@ -53,12 +55,45 @@ std::vector<CaseKey> pair_rows(std::string const& a, std::string const& b) {
        "Half of the work of adhesion between them, if not that of [contact]."},
   };
 }
+
+std::vector<CaseKey> modifier_rows(std::string const& name) {
+  auto const value = [=](auto ModifierSettings::*member) {
+    return [=](Case& into) -> auto& { return into.modifiers[name].*member; };
+  };
+  using M = ModifierSettings;
+  std::string const table = "modifiers." + name;
+  Choice const target{
+      modifier_targets(),
+      [=](Case const& from) {
+        auto const& all = modifier_targets();
+        return static_cast<std::size_t>(std::ranges::find(all, from.modifiers.at(name).target) - all.begin());
+      },
+      [=](Case& into, std::size_t index) { into.modifiers[name].target = modifier_targets().at(index); }};
+  return {
+      {table, "enabled", Member<bool>(value(&M::enabled)), D::none, {}, Need::never, "true",
+       "Whether this effect of yours, a formula in the place of a number of the model, is on."},
+      {table, "target", target, D::none, {}, Need::always, "",
+       "What it changes: `material.conductivity`, `material.specific_heat` or the power that the metal absorbs, `laser.absorbed_power`."},
+      {table, "expression", Member<std::string>(value(&M::expression)), D::none, {}, Need::always, "",
+       "Formula of the new value [SI], with s the strength. Conductivity: of k, s, T. Specific heat: of c, s, T. Absorbed "
+       "power: of absorbed, s, incident [W], t (time that the beam is on), v (scan speed), x, y. For example \"k*(1 + s*(T - 300)/1000)\"."},
+      {table, "strength", Member<double>(value(&M::strength)), D::none, {-1e6, 1e6}, Need::never, "1",
+       "s in the formula; 0: the effect is left out."},
+      {table, "prior_scale", Member<double>(value(&M::prior_scale)), D::none, {0, 1e6, Range::End::open}, Need::never, "0.5",
+       "Strength that it may well have, for `explain`."},
+      {table, "largest_strength", Member<double>(value(&M::largest_strength)), D::none, {0, 1e6, Range::End::open}, Need::never, "10",
+       "Largest strength that `explain` tries."},
+  };
+}
 // clang-format on
 
-bool is_of_names(CaseKey const& row) { return row.table == "powder.mixture" || row.table.starts_with("contact."); }
+bool is_of_names(CaseKey const& row) {
+  return row.table == "powder.mixture" || row.table.starts_with("contact.") || row.table.starts_with("modifiers.");
+}
 
 std::string family_of(std::string const& table) {
   if (table.starts_with("material.")) return "material";
+  if (table.starts_with("modifiers.")) return "modifiers.NAME";
   if (!table.starts_with("contact.") || table == "contact.wall") return table;
   return table.find('.', 8) == std::string::npos ? "contact.NAME" : "contact.NAME.NAME";
 }

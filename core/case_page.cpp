@@ -61,7 +61,7 @@ void write_row(std::string& text, std::string& table, CaseKey const& row, std::s
   text += fmt::format("{} = {}\n", row.key, *value);
 }
 
-/// [powder.mixture], [contact.A] and [contact.A.B] of the names that the case gives.
+/// [powder.mixture], [contact.A], [contact.A.B] and [modifiers.A] of the names that the case gives.
 void write_tables_of_names(std::string& text, std::string& table, Case const& checked) {
   for (auto const& [name, share] : checked.powder.mixture) {
     CaseKey row = mixture_row(name);
@@ -73,6 +73,8 @@ void write_tables_of_names(std::string& text, std::string& table, Case const& ch
   for (auto const& [names, pair] : checked.pairs)
     for (CaseKey const& row : pair_rows(names[0], names[1]))
       write_row(text, table, row, fmt::format("contact.{}.{}", toml_text(names[0]), toml_text(names[1])), checked);
+  for (auto const& [name, modifier] : checked.modifiers)
+    for (CaseKey const& row : modifier_rows(name)) write_row(text, table, row, "modifiers." + toml_text(name), checked);
 }
 }  // namespace
 

@@ -87,7 +87,7 @@ std::vector<CaseKey> powder_rows() {
 /// For any NAME.
 std::vector<CaseKey> rows_of_names() {
   std::vector<CaseKey> rows{mixture_row("NAME")};
-  for (auto const& part : {body_rows("NAME"), body_rows(walls_name), pair_rows("NAME", "NAME")})
+  for (auto const& part : {body_rows("NAME"), body_rows(walls_name), pair_rows("NAME", "NAME"), modifier_rows("NAME")})
     rows.insert(rows.end(), part.begin(), part.end());
   return rows;
 }

@@ -71,6 +71,8 @@ std::vector<CaseKey> const& case_schema();
 CaseKey mixture_row(std::string const& material);
 std::vector<CaseKey> body_rows(std::string const& body);
 std::vector<CaseKey> pair_rows(std::string const& a, std::string const& b);
+/// Rows of [modifiers.NAME].
+std::vector<CaseKey> modifier_rows(std::string const& name);
 bool is_of_names(CaseKey const& row);
 
 /// Table under which the schema has the rows of a table: "material" for "material.Cu", "contact.NAME" for "contact.Cu".

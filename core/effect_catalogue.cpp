@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/case_rows.hpp"
+#include "core/user_effect.hpp"
 
 namespace layerloop {
 
@@ -169,11 +170,26 @@ std::vector<Effect> solid_effects() {
 }  // namespace
 // clang-format on
 
+namespace {
+
+std::vector<Effect> built_in_effects() {
+  std::vector<Effect> all;
+  for (auto const part : {grain_effects, light_effects, heat_effects, solid_effects})
+    for (Effect& effect : part()) all.push_back(std::move(effect));
+  return all;
+}
+
+}  // namespace
+
+bool is_built_in(std::string const& name) {
+  std::vector<Effect> const all = built_in_effects();
+  return std::ranges::find(all, name, &Effect::name) != all.end();
+}
+
 std::vector<Effect> const& effect_catalogue() {
   static std::vector<Effect> const effects = [] {
-    std::vector<Effect> all;
-    for (auto const part : {grain_effects, light_effects, heat_effects, solid_effects})
-      for (Effect& effect : part()) all.push_back(std::move(effect));
+    std::vector<Effect> all = built_in_effects();
+    all.insert(all.end(), user_effects().begin(), user_effects().end());
     return all;
   }();
   return effects;

@@ -45,8 +45,9 @@ struct Effect {
   EffectParameter strength() const;
 };
 
-/// Every effect that the program knows, by stage.
+/// Every effect that the program knows, by stage; then those of libraries that were loaded before the first call.
 std::vector<Effect> const& effect_catalogue();
+bool is_built_in(std::string const& name);
 
 /// Value of an effect's parameter, its default where the settings do not name it [SI].
 /// \throws std::out_of_range  the effect has no such parameter: a bug

@@ -116,7 +116,7 @@ TomlValue plain_value(toml::node const& node) {
 /// May a table hold one of this name?
 bool holds_table(std::string const& name, std::string_view key) {
   bool const of_material = name.starts_with("contact.") && name.find('.', 8) == std::string::npos;
-  return name == "material" || name == "effects" || name == "contact" || of_material ||
+  return name == "material" || name == "effects" || name == "modifiers" || name == "contact" || of_material ||
          (name == "powder" && key == "mixture");
 }
 

@@ -11,6 +11,7 @@
 #include "core/png_image.hpp"
 #include "core/write_file.hpp"
 #include "coupling/optics_of_case.hpp"
+#include "coupling/program_version.hpp"
 #include "coupling/report/csv_table.hpp"
 #include "raytrace/render.hpp"
 
@@ -208,7 +209,7 @@ AbsorptionMap absorption_map(AbsorptionStudy const& study, Case const& checked) 
 }
 
 json absorption_summary(Case const& checked, AbsorptionStudy const& study) {
-  json all{{"verb", "absorb"}, {"case", checked.name}, {"seed", checked.seed}, {"version", LAYERLOOP_VERSION}};
+  json all{{"verb", "absorb"}, {"case", checked.name}, {"seed", checked.seed}, {"version", program_version()}};
   put(all, "absorptivity", study.absorptivity(0));
   all["standard_error"] = study.absorptivity(0).standard_error;
   double rays = 0, bounces = 0;

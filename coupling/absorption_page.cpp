@@ -9,6 +9,7 @@
 #include "core/write_file.hpp"
 #include "coupling/absorption_output.hpp"
 #include "coupling/optics_of_case.hpp"
+#include "coupling/program_version.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/page.hpp"
 #include "coupling/report/svg_map.hpp"
@@ -172,7 +173,7 @@ std::string words(nlohmann::json const& entries) {
 std::string absorption_page(std::filesystem::path const& folder, Case const& checked, AbsorptionStudy const& study) {
   nlohmann::json const summary = absorption_summary(checked, study);
   Page page{.title = checked.name,
-            .version = LAYERLOOP_VERSION,
+            .version = program_version(),
             .headline = headline(checked, study),
             .cards = cards(checked, study),
             .seed = checked.seed};

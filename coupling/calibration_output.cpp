@@ -9,6 +9,7 @@
 #include "core/case_file.hpp"
 #include "core/error.hpp"
 #include "core/write_file.hpp"
+#include "coupling/program_version.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -80,7 +81,7 @@ json definitions() {
 json summary(Case const& checked, Calibration const& found) {
   CalibrateSettings const& c = checked.calibrate;
   CalibrationPoint const& best = found.points[found.best];
-  json all{{"verb", "calibrate"}, {"case", checked.name}, {"seed", checked.seed}, {"version", LAYERLOOP_VERSION}};
+  json all{{"verb", "calibrate"}, {"case", checked.name}, {"seed", checked.seed}, {"version", program_version()}};
   all.update(point(best, c));
   all["targets"] = {{"angle_of_repose", c.target_repose / degree},
                     {"slipping_angle", c.target_slip / degree},

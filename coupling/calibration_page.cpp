@@ -7,6 +7,7 @@
 
 #include "coupling/calibration_fit.hpp"
 #include "coupling/calibration_output.hpp"
+#include "coupling/program_version.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/svg_map.hpp"
 #include "coupling/report/svg_plot.hpp"
@@ -139,7 +140,7 @@ std::string calibration_page(Case const& checked, Calibration const& found) {
       "calibration</title>\n<style>{}</style>\n</head>\n<body>\n<header>\n<div class=\"page\">\n<p "
       "class=\"program\">layerloop {} &middot; seed {}</p>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</div>\n</header>\n"
       "<main class=\"page\">\n{}</main>\n</body>\n</html>\n",
-      base64(bytes_of(report_css_sha256)), escape(checked.name), report_css, LAYERLOOP_VERSION, checked.seed,
+      base64(bytes_of(report_css_sha256)), escape(checked.name), report_css, program_version(), checked.seed,
       escape(checked.name), escape(found.verdict), body);
 }
 

@@ -115,6 +115,7 @@ Exposure plan_exposure(Case const& checked, std::int32_t layer) {
   }
   source.power.resize(exposure.stop_of_stretch.size());
   exposure.plume = Plume(checked);
+  exposure.modified = std::make_shared<ModifiedAbsorption const>(checked);
   if (!checked.laser.absorptivity) {
     exposure.beam = spot_beam(checked.laser, Vec3::Zero(), checked.laser.power);
     exposure.optics = optical_set(checked);
@@ -146,6 +147,19 @@ AbsorbedPower absorb(Exposure const& exposure, std::size_t s, double beam_power,
   return raytrace::trace(scene, beam, exposure.optics, floor_index(checked), cells.grid, settings, &comm);
 }
 
+/// Puts what effects of the user's make of the absorbed power in its place; the rest escapes.
+void modify(AbsorbedPower& power, BeamStop const& stop, double speed, ModifiedAbsorption const& modified) {
+  if (!modified.acts() || power.absorbed == 0) return;
+  double const wanted = modified({stop.on_time, power.incident, power.absorbed, speed, stop.centre, stop.along});
+  double const factor = wanted / power.absorbed;
+  for (double& watts : power.watts) watts *= factor;
+  power.outside_grid *= factor;
+  power.escaped += power.absorbed - wanted;
+  power.absorbed = wanted;
+  power.absorptivity *= factor;
+  power.standard_error *= factor;
+}
+
 /// Books what the plume took from a beam of `power` before the rest was absorbed as `absorbed` says.
 void book_attenuation(AbsorbedPower& absorbed, double power) {
   double const passed = absorbed.incident / power;
@@ -168,6 +182,7 @@ void expose_stretch(Exposure& exposure, std::size_t stretch, MeltState const& no
   AbsorbedPower& power = source.power[stretch];
   power = absorb(exposure, s, stop.power * exposure.plume.transmission(stop.along), laser, now, scene, cells, checked,
                  layer, comm);
+  modify(power, stop, checked.scan.scan_speed, *exposure.modified);
   book_attenuation(power, stop.power);
   accumulate(exposure.mean, power, (stop.end_time - stop.begin_time) / exposure.on_time);
   exposure.worst_ray_energy_error = std::max(exposure.worst_ray_energy_error, ray_energy_error(power));

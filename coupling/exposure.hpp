@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 
 #include "core/absorbed_power.hpp"
 #include "core/area_map.hpp"
@@ -8,6 +9,7 @@
 #include "core/communicator.hpp"
 #include "core/heat_source.hpp"
 #include "core/melt_state.hpp"
+#include "core/modifier.hpp"
 #include "core/powder_bed.hpp"
 #include "core/triangle_surface.hpp"
 #include "coupling/effects/plume_attenuation.hpp"
@@ -37,6 +39,7 @@ struct Exposure {
   HeatSource source;                          ///< powers empty until their stretch has been exposed
   AbsorbedPower mean;                         ///< over the time that the beam is on
   Plume plume;
+  std::shared_ptr<ModifiedAbsorption const> modified;  ///< by effects of the user's
   double worst_ray_energy_error = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "core/vtkhdf.hpp"
 #include "core/write_file.hpp"
 #include "coupling/checkpoint.hpp"
+#include "coupling/program_version.hpp"
 #include "coupling/report.hpp"
 #include "coupling/stopwatch.hpp"
 #include "dem/layer_metrics.hpp"
@@ -119,7 +120,7 @@ void LayerOutput::layer(BuildState& build) const {
 
 void LayerOutput::end(BuildState const& build) const {
   if (!writes_) return;
-  ReportExtras const extras{LAYERLOOP_VERSION, dem::definitions()};
+  ReportExtras const extras{program_version(), dem::definitions()};
   write_file(folder_ / "summary.json", summary(checked_, build.record, extras).dump(2) + "\n");
   write_report(folder_, checked_, build.record, build.bed, build.substrate, extras);
 }

@@ -12,6 +12,7 @@
 #include "core/vtkhdf.hpp"
 #include "core/write_file.hpp"
 #include "coupling/layer_output.hpp"
+#include "coupling/program_version.hpp"
 #include "coupling/report/csv_table.hpp"
 #include "coupling/scan_path.hpp"
 #include "coupling/stopwatch.hpp"
@@ -233,7 +234,7 @@ json melt_summary(MeltStudy const& study) {
   json all{{"verb", "melt"},
            {"case", study.placed.name},
            {"seed", study.placed.seed},
-           {"version", LAYERLOOP_VERSION},
+           {"version", program_version()},
            {"pool", pool(study)},
            {"regime", name_of(study.regime)},
            {"isotherm", study.placed.heat.pool_isotherm},

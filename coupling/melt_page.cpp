@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "coupling/melt_output.hpp"
+#include "coupling/program_version.hpp"
 #include "coupling/report/figures.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/page.hpp"
@@ -145,11 +146,11 @@ std::string words(nlohmann::json const& entries, std::string const& prefix = "")
 std::string melt_page(std::filesystem::path const& folder, MeltStudy const& study) {
   nlohmann::json const summary = melt_summary(study);
   RunRecord const& record = study.build.record;
-  ReportExtras const extras{LAYERLOOP_VERSION, {}};
+  ReportExtras const extras{program_version(), {}};
   ReportInput const input{folder, study.placed,           record, study.build.bed, study.build.substrate,
                           extras, {&record.layers.back()}};
   Page page{.title = study.placed.name,
-            .version = LAYERLOOP_VERSION,
+            .version = program_version(),
             .headline = headline(study),
             .cards = cards(study),
             .seed = study.placed.seed};

@@ -18,7 +18,8 @@ Motion motion_of(Case const& checked) {
           .time_step = checked.contact.time_step_fraction * shortest_rayleigh_time(checked, smallest),
           .grains_sleep = checked.run.grains_sleep,
           .keeps_energy_ledger = checked.run.energy_ledger,
-          .mixture = mixture_of(checked)};
+          .mixture = mixture_of(checked),
+          .user = user_attractions(checked)};
 }
 
 double shortest_contact_time(Motion const& motion, double radius, double speed) {

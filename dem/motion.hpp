@@ -4,6 +4,7 @@
 #include "core/case.hpp"
 #include "dem/contact_law.hpp"
 #include "dem/mixture.hpp"
+#include "dem/user_attraction.hpp"
 
 namespace layerloop::dem {
 
@@ -16,6 +17,7 @@ struct Motion {
   bool grains_sleep = false;         ///< whether grains that lie still are left alone until something moves near them
   bool keeps_energy_ledger = false;  ///< see Simulation::energy()
   Mixture mixture = {};
+  std::vector<UserAttraction> user = {};  ///< effects of loaded libraries
 
   /// Of a grain of this PowderBed::material [kg/m^3].
   double density_of(std::int32_t material) const {

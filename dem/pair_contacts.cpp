@@ -123,6 +123,24 @@ double press(PairBlock& pairs, std::size_t count, ContactLaw const* laws, Period
   return most;
 }
 
+/// Between the halves: what loaded libraries add to the attraction of the pairs that touch.
+void attract(PairBlock& pairs, std::size_t count, std::vector<UserAttraction> const& user) {
+  double overlap[block], radius[block], speed[block], added[block] = {};
+  std::size_t lane[block], touching = 0;
+  PairLanes const& g = pairs.grains;
+  for (std::size_t l = 0; l < count; ++l) {
+    double const felt = 2 * (g.first.radius[l] - pairs.arm_first[l]);
+    if (!(felt > 0)) continue;
+    overlap[touching] = felt;
+    radius[touching] = pairs.radius[l];
+    speed[touching] = g.vx[l] * pairs.nx[l] + g.vy[l] * pairs.ny[l] + g.vz[l] * pairs.nz[l];
+    lane[touching++] = l;
+  }
+  if (touching == 0) return;
+  for (UserAttraction const& one : user) one.effect->add({touching, overlap, radius, speed}, one.values, added);
+  for (std::size_t t = 0; t < touching; ++t) pairs.attraction[lane[t]] += added[t];
+}
+
 /// Second half.
 template <RollingModel rolling, bool many_laws>
 void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, double dt,
@@ -171,14 +189,15 @@ void rub(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const
 /// \return largest overlap over the smaller grain's diameter
 template <Reach reach, RollingModel rolling, bool many_laws>
 double act_on(PairBlock& pairs, std::size_t count, Springs const& s, ContactLaw const* laws, Period const& period,
-              double dt, ActionUnit const& unit) {
+              double dt, ActionUnit const& unit, std::vector<UserAttraction> const& user) {
   double const worst = press<reach, many_laws>(pairs, count, laws, period);
+  if (!user.empty()) attract(pairs, count, user);
   rub<rolling, many_laws>(pairs, count, s, laws, dt, unit);
   return 0.5 * worst;
 }
 
 using ActOn = double (*)(PairBlock&, std::size_t, Springs const&, ContactLaw const*, Period const&, double,
-                         ActionUnit const&);
+                         ActionUnit const&, std::vector<UserAttraction> const&);
 
 template <Reach reach, bool many_laws>
 ActOn kernel(RollingModel rolling) {
@@ -386,7 +405,7 @@ double evaluate_part(NearPairs& near, std::size_t begin, std::size_t end, std::i
                           has_turn ? &near.turn_y[at] : nullptr,
                           has_turn ? &near.turn_z[at] : nullptr};
     if (laws.form.reach != Reach::touch) std::copy_n(&near.touching[at], count, pairs.touching.values);
-    worst = std::max(worst, act_on_block(pairs, count, springs, laws.laws.data(), period, dt, unit));
+    worst = std::max(worst, act_on_block(pairs, count, springs, laws.laws.data(), period, dt, unit, laws.user));
     std::copy_n(pairs.touching.values, count, &near.touching[at]);
     constexpr auto mask = static_cast<std::int32_t>(NearPairs::ring) - 1;
     for (std::size_t l = 0; l < count; ++l) in_ring_first[l] = first[l] & mask, in_ring_second[l] = second[l] & mask;

@@ -5,6 +5,7 @@
 #include "dem/action_unit.hpp"
 #include "dem/contact_law.hpp"
 #include "dem/neighbours.hpp"
+#include "dem/user_attraction.hpp"
 
 namespace layerloop::dem {
 
@@ -13,6 +14,7 @@ struct LawTable {
   LawForm form;
   std::int32_t materials = 1;
   std::vector<ContactLaw> laws;
+  std::vector<UserAttraction> user = {};  ///< effects of loaded libraries that are on
 };
 
 /// The pairs of some rows that may touch before the grains have moved on by `half_gap` each, with their springs: only

@@ -45,7 +45,7 @@ Simulation::Simulation(Motion motion, Rig rig, Communicator const& communicator)
       decomposition_(communicator, rig_.length),
       moving_walls_(rig_.walls, communicator),
       period_{rig_.length, rig_.width},
-      laws_{law_form(motion_.contact), 1, {motion_.between_grains}},
+      laws_{law_form(motion_.contact), 1, {motion_.between_grains}, motion_.user},
       wall_laws_{motion_.at_walls} {
   if (motion_.mixture.density.empty()) return;
   laws_.materials = static_cast<std::int32_t>(motion_.mixture.materials());

@@ -8,6 +8,7 @@
 
 #include "core/effect_catalogue.hpp"
 #include "core/error.hpp"
+#include "core/modifier.hpp"
 #include "core/note_once.hpp"
 #include "core/progress.hpp"
 #include "thermal/effects/keyhole.hpp"
@@ -191,7 +192,7 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Case co
                    Report report, AbsorbedNow const& absorbed_now) {
   double const span = content.grid.cell * content.grid.n[1];
   bool const periodic = std::abs(span - settings.period_y()) < 0.01 * content.grid.cell;
-  return expose(content, source, settings.material, settings.heat, settings.effects,
+  return expose(content, source, modified_material(settings), settings.heat, settings.effects,
                 periodic ? SideY::periodic : SideY::far_field, comm, report, absorbed_now);
 }
 

@@ -134,6 +134,11 @@ std::vector<std::string> settings_of(Candidate const& candidate, double strength
   if (strength == 0 || !candidate.quantities.empty()) return {};
   auto const effect = std::ranges::find(effect_catalogue(), candidate.name, &Effect::name);
   if (effect != effect_catalogue().end()) return effect_settings(*effect, strength, base);
+  if (auto const modifier = base.modifiers.find(candidate.name); modifier != base.modifiers.end()) {
+    std::string const table = "modifiers." + candidate.name;
+    double const held = modifier->second.enabled ? modifier->second.strength : 0;
+    return {table + ".enabled=true", set(table + ".strength", held + strength)};
+  }
   return key_settings(candidate.name, strength, base);
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "core/modifier.hpp"
 #include "core/optical_constants.hpp"
+#include "core/user_effect.hpp"
 #include "validation/held_strength.hpp"
 
 namespace layerloop::validation {
@@ -136,8 +138,15 @@ std::string why_not_heat(Effect const& effect, Reach const& reach, Case const& b
   return {};
 }
 
+/// What a loaded library does to readings; null where it is none of that.
+ReadingEffect const* reading_effect(std::string const& name) {
+  bool const of_library = std::ranges::find(user_effects(), name, &Effect::name) != user_effects().end();
+  return of_library ? dynamic_cast<ReadingEffect const*>(&user_effect(name)) : nullptr;
+}
+
 /// Empty: it can be tested.
 std::string why_not(Effect const& effect, Reach const& reach, Case const& base) {
+  if (reading_effect(effect.name)) return {};
   if (!sees(reach, effect.stage)) return not_seen(effect.stage);
   if (base.effect_strength(effect.name) >= effect.largest_strength) return "the case has all of it already";
   switch (effect.stage) {
@@ -188,7 +197,30 @@ Candidate candidate_of(Effect const& effect, Case const& base) {
     c.largest = std::min(c.largest,
                          base.machine.blade_clearance / effect_parameter(base.effects, "blade_vibration", "amplitude"));
   c.prior_scale = std::min(c.prior_scale, c.largest);
+  if (ReadingEffect const* const reading = reading_effect(effect.name)) c.quantities = reading->quantities();
   return c;
+}
+
+/// Effects that the case writes as formulas.
+std::vector<Candidate> modifiers(Case const& base, Reach const& reach) {
+  std::vector<Candidate> all;
+  for (auto const& [name, modifier] : base.modifiers) {
+    if (!reach.heat) continue;
+    double const held = modifier.enabled ? modifier.strength : 0;
+    Candidate c{name,
+                stage_of_target(modifier.target),
+                EffectClass::physics,
+                modifier.prior_scale,
+                modifier.largest_strength,
+                false,
+                modifier.target + " = " + modifier.expression};
+    if (held != 0) {
+      c.kind = EffectClass::calibration;
+      c.two_sided = true;
+    }
+    all.push_back(c);
+  }
+  return all;
 }
 
 std::vector<Candidate> numerics(Reach const& reach) {
@@ -232,6 +264,13 @@ std::vector<Candidate> input_errors(Study const& study, Case const& base, Reach 
                      input.prior_scale, 0.5, true, input.sentence});
   }
   return all;
+}
+
+std::map<std::string, double> parameters_of(std::string const& effect) {
+  std::map<std::string, double> values;
+  auto const row = std::ranges::find(effect_catalogue(), effect, &Effect::name);
+  for (EffectParameter const& p : row->parameters) values[p.name] = effect_parameter({}, effect, p.name);
+  return values;
 }
 
 EffectStage stage_of(std::string const& quantity) {
@@ -282,7 +321,8 @@ std::vector<Candidate> candidates_for(Study const& study, Case const& base) {
   std::vector<Candidate> all;
   for (Effect const& effect : effect_catalogue())
     if (why_not(effect, reach, base).empty()) all.push_back(candidate_of(effect, base));
-  for (auto const& more : {numerics(reach), input_errors(study, base, reach), instruments(study)})
+  for (auto const& more :
+       {modifiers(base, reach), numerics(reach), input_errors(study, base, reach), instruments(study)})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -302,11 +342,16 @@ void apply_instruments(Study const& study, std::vector<Candidate> const& candida
     double const strength = strengths[static_cast<Eigen::Index>(c)];
     if (candidate.quantities.empty() || strength == 0) continue;
     bool const offset = candidate.name.starts_with(offset_name);
+    ReadingEffect const* const own = reading_effect(candidate.name);
+    EffectValues with{strength, {}};
+    if (own) with.parameters = parameters_of(candidate.name);
     for (std::size_t o = 0; o < study.observables.size(); ++o) {
       std::string const& quantity = study.observables[o].quantity;
       if (std::ranges::find(candidate.quantities, quantity) == candidate.quantities.end()) continue;
       double& value = values[static_cast<Eigen::Index>(o)];
-      value = offset ? value + strength * offset_of(quantity).unit : value * (1 + scale_unit * strength);
+      value = own      ? own->reading(value, with)
+              : offset ? value + strength * offset_of(quantity).unit
+                       : value * (1 + scale_unit * strength);
     }
   }
 }

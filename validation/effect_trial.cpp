@@ -42,7 +42,7 @@ diameters = ["21 um", "28 um"]
 fractions = [0.5, 0.5]
 particles = 650
 [contact]
-youngs_modulus = "5 MPa"
+youngs_modulus = "20 MPa"
 poisson_ratio = 0.3
 restitution = 0.7
 sliding_friction = 0.5
@@ -73,7 +73,7 @@ enabled = true
 
 /// What an effect needs beside it to act at all.
 std::vector<std::string> partners_of(std::string const& name) {
-  if (name == "wall_cohesion") return {"contact.cohesion=sjkr2", "contact.cohesion_energy_density=5000"};
+  if (name == "wall_cohesion") return {"contact.cohesion=sjkr2", "contact.cohesion_energy_density=12500"};
   if (name == "evaporation") return {"laser.power=50"};  // without it the metal may not boil
   return {};
 }
