@@ -10,7 +10,14 @@
 namespace layerloop::apps {
 namespace {
 
-/// Cores of this machine for each of the ranks that run on it.
+std::vector<std::string> overrides_with_seed(CaseOptions const& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
+  return overrides;
+}
+
+}  // namespace
+
 int cores_per_rank() {
   MPI_Comm node;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
@@ -19,14 +26,6 @@ int cores_per_rank() {
   MPI_Comm_free(&node);
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
 }
-
-std::vector<std::string> overrides_with_seed(CaseOptions const& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
-  return overrides;
-}
-
-}  // namespace
 
 void add_case_options(CLI::App& verb, CaseOptions& options) {
   verb.add_option("case", options.case_file, "the case file (TOML)")->required()->type_name("FILE.toml");

@@ -73,6 +73,7 @@ int main(int argc, char** argv) {
   apps::add_calibrate(program, action);
   apps::add_doctor(program, action);
   apps::add_effect(program, action);
+  apps::add_compare(program, action);
   try {
     program.parse(argc, argv);
   } catch (CLI::ParseError const& error) {

@@ -56,8 +56,9 @@ NamedBed make_bed(Case const& checked, AbsorbOptions const& options, std::size_t
   seeded.seed += k;
   std::string const name = fmt::format("seed {}", seeded.seed);
   if (checked.absorb.bed == AbsorbingBed::settled) return {name, bed_that_settles(seeded, comm, !options.quiet)};
-  return {name,
-          bed_that_is_spread(seeded, options.folder / fmt::format("spread_seed_{}", seeded.seed), comm, options.quiet)};
+  std::filesystem::path const folder =
+      options.spread.empty() ? options.folder / fmt::format("spread_seed_{}", seeded.seed) : options.spread;
+  return {name, bed_that_is_spread(seeded, folder, comm, options.quiet)};
 }
 
 void make_folder(std::filesystem::path const& folder, Communicator const& comm) {
@@ -111,7 +112,8 @@ AbsorptionFigure AbsorptionStudy::substrate(std::size_t set) const {
 AbsorptionStudy run_absorption(Case const& checked, AbsorbOptions const& options, Communicator const& comm) {
   AbsorptionStudy study;
   study.sets = optical_sets(checked, options);  // refuses bad input before anything is written
-  make_folder(options.folder, comm);
+  bool const writes = !options.folder.empty();
+  if (writes) make_folder(options.folder, comm);
   bool const from_files = checked.absorb.bed == AbsorbingBed::file;
   std::size_t const beds = from_files ? options.beds.size() : static_cast<std::size_t>(checked.run.replicates);
   for (std::size_t k = 0; k < beds; ++k) {
@@ -120,7 +122,8 @@ AbsorptionStudy run_absorption(Case const& checked, AbsorbOptions const& options
       Stopwatch const timed(study.time_dem);
       made = make_bed(checked, options, k, comm);
     }
-    if (comm.is_root() && !from_files) write_lit_bed(options.folder / fmt::format("bed_{:04}.csv", k + 1), made.lit);
+    if (writes && comm.is_root() && !from_files)
+      write_lit_bed(options.folder / fmt::format("bed_{:04}.csv", k + 1), made.lit);
     Stopwatch const timed(study.time_rays);
     raytrace::BedScene const scene(made.lit.bed, made.lit.surface, made.lit.period);
     study.beam = beam_over(made.lit, checked);
@@ -129,7 +132,7 @@ AbsorptionStudy run_absorption(Case const& checked, AbsorbOptions const& options
     study.beds.push_back({made.name, made.lit.origin, measure(made.lit, scene), std::move(light)});
     study.last = std::move(made.lit);
   }
-  if (comm.is_root()) write_absorption(options.folder, checked, study);
+  if (writes && comm.is_root()) write_absorption(options.folder, checked, study);
   return study;
 }
 

@@ -12,8 +12,9 @@
 namespace layerloop::coupling {
 
 struct AbsorbOptions {
-  std::filesystem::path folder;        ///< results go here; made when missing
-  std::vector<BedSource> beds;         ///< files, where absorb.bed is one
+  std::filesystem::path folder;       ///< results go here; made when missing; empty: nothing is written
+  std::filesystem::path spread = {};  ///< folder of a layer that is spread, with run.replicates = 1; empty: in `folder`
+  std::vector<BedSource> beds;        ///< files, where absorb.bed is one
   std::vector<std::string> materials;  ///< further ones that the powder might be of
   std::vector<double> wavelengths;     ///< further ones [m]
   std::vector<double> temperatures;    ///< further ones of the metal [K]

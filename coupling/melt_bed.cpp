@@ -7,6 +7,7 @@
 
 #include "core/bed_file.hpp"
 #include "core/case_file.hpp"
+#include "core/effect_catalogue.hpp"
 #include "core/error.hpp"
 #include "coupling/checkpoint.hpp"
 #include "coupling/layer_loop.hpp"
@@ -54,6 +55,14 @@ PowderBed laid_out(BedFile const& file, double floor, double size_x, double size
   return bed;
 }
 
+/// What grains have of their metal.
+Material grain_metal(Material const& metal) {
+  Material grains;
+  grains.name = metal.name;
+  grains.density = metal.density;
+  return grains;
+}
+
 }  // namespace
 
 BuildState bare_plate(Case const& placed) {
@@ -87,21 +96,48 @@ BuildState plate_with_bed(Case& placed, BedSource const& source) {
   return build;
 }
 
-BuildState spread_bed(Case const& checked, std::filesystem::path const& folder, Communicator const& comm, bool quiet) {
+Case what_spreading_reads(Case const& checked) {
   Case spreading = checked;
   spreading.process = Process::spreading;
+  spreading.laser = {};
+  spreading.optics = {};
+  spreading.scan = {};
+  spreading.heat = {.cell_size = checked.heat.cell_size};  // of the lattice in which the part lies
+  spreading.calibrate = {};
+  spreading.absorb = {};
+  spreading.melt = {};
+  for (Effect const& effect : effect_catalogue()) {
+    if (effect.stage != EffectStage::dem) spreading.effects[effect.name] = {};
+  }
+  spreading.material = grain_metal(checked.material);
+  if (checked.floor_material) spreading.floor_material = grain_metal(*checked.floor_material);
+  std::ranges::transform(checked.admixtures, spreading.admixtures.begin(), grain_metal);
   spreading.run.replicates = 1;
   spreading.run.checkpoint = true;
+  return spreading;
+}
+
+BuildState spread_layers(Case const& checked, std::filesystem::path const& folder, Communicator const& comm,
+                         bool quiet) {
+  Case const spreading = what_spreading_reads(checked);
+  std::string const text = resolved_toml(spreading);
+  std::string skipped;
+  std::optional<BuildState> build = load_newest_checkpoint(folder, text, skipped);
+  if (build && build->layers_done == checked.run.layers) return *build;
   RunOptions options;
   options.folder = folder;
   options.resume = true;
   options.quiet = quiet;
   run_layer_loop(spreading, options, comm);
-  std::string skipped;
-  std::optional<BuildState> build = load_newest_checkpoint(folder, resolved_toml(spreading), skipped);
+  build = load_newest_checkpoint(folder, text, skipped);
   if (!build) throw FileError(fmt::format("the bed that was spread in {} cannot be read again", folder.string()));
-  build->record = {};
   return *build;
+}
+
+BuildState spread_bed(Case const& checked, std::filesystem::path const& folder, Communicator const& comm, bool quiet) {
+  BuildState build = spread_layers(checked, folder, comm, quiet);
+  build.record = {};
+  return build;
 }
 
 }  // namespace layerloop::coupling

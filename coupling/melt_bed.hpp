@@ -17,8 +17,16 @@ BuildState bare_plate(Case const& placed);
 /// beyond the plate are left out. \throws InputError no grain is left, or one of a material that the case does not know
 BuildState plate_with_bed(Case& placed, BedSource const& source);
 
-/// The last layer that the recoater spreads, with part and plate under it; what lies in `folder` from an earlier call
-/// for the same case is used again. \note Collective
+/// The case with all that only light, heat and measuring read at its defaults: beds of equal ones are the same.
+Case what_spreading_reads(Case const& checked);
+
+/// Spreads run.layers layers and no more; the record is that of the spreading. What lies in `folder` from an earlier
+/// call for a case that reads alike is used again. \note Collective
+BuildState spread_layers(Case const& checked, std::filesystem::path const& folder, Communicator const& comm,
+                         bool quiet);
+
+/// The last layer that the recoater spreads, with part and plate under it, as the start of a record of its own; see
+/// spread_layers. \note Collective
 BuildState spread_bed(Case const& checked, std::filesystem::path const& folder, Communicator const& comm, bool quiet);
 
 }  // namespace layerloop::coupling

@@ -25,7 +25,8 @@ namespace {
 BuildState build_to_melt(Case& placed, MeltOptions const& options, Communicator const& comm) {
   if (placed.melt.bed == MeltedBed::plate) return bare_plate(placed);
   if (placed.melt.bed == MeltedBed::file) return plate_with_bed(placed, options.bed);
-  return spread_bed(placed, options.folder / "spread", comm, options.quiet);
+  std::filesystem::path const folder = options.spread.empty() ? options.folder / "spread" : options.spread;
+  return spread_bed(placed, folder, comm, options.quiet);
 }
 
 struct Exposed {
@@ -177,7 +178,8 @@ MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator
   study.placed = with_plate(checked, study.estimate);
   scan_path(study.placed, 1);  // refuses a way that leaves the bed
   auto const report = comm.is_root() && !options.quiet ? thermal::Report::progress : thermal::Report::silent;
-  MeltOutput const output(study.placed, options.folder, comm);
+  std::optional<MeltOutput> output;
+  if (!options.folder.empty()) output.emplace(study.placed, options.folder, comm);
   double making = 0, total = 0;
   {
     Stopwatch const timed(total);
@@ -212,7 +214,7 @@ MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator
     study.build.record.layers.push_back(layer);
   }
   study.build.record.wall_time.total = total;
-  output.write(study);
+  if (output) output->write(study);
   return study;
 }
 

@@ -14,9 +14,10 @@
 namespace layerloop::coupling {
 
 struct MeltOptions {
-  std::filesystem::path folder;  ///< results go here; made when missing
-  BedSource bed;                 ///< where melt.bed is a file
-  bool quiet = false;            ///< no progress
+  std::filesystem::path folder;       ///< results go here; made when missing; empty: nothing is written
+  BedSource bed;                      ///< where melt.bed is a file
+  std::filesystem::path spread = {};  ///< folder of a layer that is spread; empty: `spread` in that of the results
+  bool quiet = false;                 ///< no progress
 };
 
 /// What a track or patch looks like, from what is in the run.

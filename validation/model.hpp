@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace layerloop::validation {
 
@@ -25,6 +27,8 @@ class Model {
   virtual Prediction predict(ModelPoint const& point) = 0;
   /// Passes over all conditions that were computed so far; what a cache knew counts nothing.
   virtual double passes() const = 0;
+  /// What had no answer, and why, in words.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 }  // namespace layerloop::validation
