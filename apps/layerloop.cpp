@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
   apps::add_bench(program, action);
   apps::add_check(program, action);
   apps::add_calibrate(program, action);
+  apps::add_blind(program, action);
   apps::add_doctor(program, action);
   apps::add_effect(program, action);
   apps::add_compare(program, action);

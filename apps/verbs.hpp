@@ -28,6 +28,7 @@ void add_melt(CLI::App& program, Action& chosen);
 void add_bench(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);
 void add_calibrate(CLI::App& program, Action& chosen);
+void add_blind(CLI::App& program, Action& chosen);
 void add_doctor(CLI::App& program, Action& chosen);
 void add_effect(CLI::App& program, Action& chosen);
 void add_compare(CLI::App& program, Action& chosen);

@@ -95,5 +95,20 @@ TEST(IncludeGraph, LibrariesStayOnTheirIslands) {
   }
 }
 
+TEST(IncludeGraph, OnlyTheBlindTestKnowsTheTruth) {
+  std::size_t users = 0;
+  for (Include const& include : all_includes()) {
+    bool const truth = include.header.starts_with("validation/truth/"),
+               blind = include.header.starts_with("validation/blind/");
+    if (!truth && !blind) continue;
+    std::string const file = std::filesystem::relative(include.file, source_dir).string();
+    bool const tester = file.starts_with("validation/blind/") || file == "apps/blind.cpp";
+    EXPECT_TRUE(tester || (truth && file.starts_with("validation/truth/")))
+        << file << " includes " << include.header << ": a diagnosis must not be able to look at what is hidden";
+    ++users;
+  }
+  EXPECT_GT(users, 5U);
+}
+
 }  // namespace
 }  // namespace layerloop

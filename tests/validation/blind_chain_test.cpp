@@ -26,7 +26,7 @@ TEST(PoolTable, agrees_with_the_integral_it_is_made_from) {
       PoolSize const exact = thermal::eagar_tsai_pool(beam, metal);
       DimensionlessPool const table =
           dimensionless_pool(power / (26 * 40e-6 * 1400), speed * 40e-6 * metal.heat_capacity / 26);
-      EXPECT_NEAR(2 * table.half_width * 40e-6, exact.width, 2e-3 * exact.width) << speed << " " << power;
+      EXPECT_NEAR(2 * table.half_width * 40e-6, exact.width, 6e-3 * exact.width) << speed << " " << power;
       EXPECT_NEAR(table.depth * 40e-6, exact.depth, 2e-3 * exact.depth) << speed << " " << power;
     }
 }

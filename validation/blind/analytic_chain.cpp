@@ -56,7 +56,8 @@ std::vector<KnownEffect> const& known_effects() {
 struct KnownReading {
   std::string quantity;
   EffectStage stage;
-  double unit;  ///< of an offset [SI]
+  double unit;          ///< of an offset [SI]
+  double largest = 10;  ///< of those; a share of the surface must not pass 1
 };
 
 std::vector<KnownReading> const& known_readings() {
@@ -64,7 +65,7 @@ std::vector<KnownReading> const& known_readings() {
                                                   {"pool.depth", heat, 4e-6},
                                                   {"absorptivity", laser, 0.02},
                                                   {"bed.relative_density", dem, 0.02},
-                                                  {"bed.surface_coverage", dem, 0.02}};
+                                                  {"bed.surface_coverage", dem, 0.02, 4}};
   return readings;
 }
 
@@ -157,7 +158,10 @@ Prediction AnalyticChain::predict(ModelPoint const& point) {
       value = reading.relative ? value * (1 + strength) : value + strength * reading.unit;
     }
   }
-  passes_ += 1;
+  std::vector<double> inside(point.calibration.begin(), point.calibration.end());
+  for (auto const& [candidate, effect] : effects_) inside.push_back(point.strengths[candidate]);
+  for (auto const& [candidate, change] : input_errors_) inside.push_back(point.strengths[candidate]);
+  computed_.insert(std::move(inside));
   return prediction;
 }
 
@@ -167,9 +171,16 @@ std::vector<Candidate> analytic_candidates() {
   for (auto const& [key, stage] : {std::pair{"laser.power", laser}, std::pair{"scan.scan_speed", laser}})
     candidates.push_back({std::string("error of ") + key, stage, calibration, 0.05, 0.4, true});
   for (KnownReading const& known : known_readings()) {
-    candidates.push_back({"offset of " + known.quantity, known.stage, instrument, 1, 10, true, "", {known.quantity}});
     candidates.push_back(
-        {"scale of " + known.quantity, known.stage, instrument, 0.05, 0.5, true, "", {known.quantity}});
+        {"offset of " + known.quantity, known.stage, instrument, 1, known.largest, true, "", {known.quantity}});
+    candidates.push_back({"scale of " + known.quantity,
+                          known.stage,
+                          instrument,
+                          0.05,
+                          0.025 * known.largest,
+                          true,
+                          "",
+                          {known.quantity}});
   }
   return candidates;
 }

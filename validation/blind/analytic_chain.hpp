@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <vector>
 
 #include "validation/blind/chain_formulas.hpp"
@@ -15,7 +16,8 @@ class AnalyticChain : public Model {
   /// \throws InputError a quantity, a calibration key or a candidate that the chain does not know
   AnalyticChain(Study const& study, std::vector<Candidate> const& candidates);
   Prediction predict(ModelPoint const& point) override;
-  double passes() const override { return passes_; }
+  /// Points that differ in reading errors alone count once: the chain need not run again for them.
+  double passes() const override { return static_cast<double>(computed_.size()); }
 
  private:
   /// One number of a ModelPoint and the input that it sets, or scales by 1 + value.
@@ -40,7 +42,7 @@ class AnalyticChain : public Model {
   std::vector<std::pair<Eigen::Index, InputChange>> input_errors_;  ///< of candidates
   std::vector<std::pair<Eigen::Index, ChainEffect>> effects_;       ///< of candidates
   std::vector<Reading> readings_;                                   ///< of candidates
-  double passes_ = 0;
+  std::set<std::vector<double>> computed_;  ///< calibration and strengths of what acts inside
 };
 
 /// Everything that may be wrong with the chain: effects of the catalogue, its discretisation, input and reading errors.

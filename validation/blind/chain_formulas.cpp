@@ -27,7 +27,7 @@ void spread(ChainInputs const& in, ChainStrengths const& s, ChainState& state) {
   double const grains = state.effective_thickness / grain_diameter;  // that lie on one another
   double const friction = in.sliding_friction - 0.5;
   double packing = 0.62 * (1 - 0.25 / grains) * (1 - 0.35 * friction) * std::pow(speed, -0.05);
-  double open = 0.25 * std::exp(-0.8 * grains) * (1 + 0.5 * friction) * std::pow(speed, 0.2);  // share without grains
+  double open = 0.35 * std::exp(-0.5 * grains) * (1 + 0.5 * friction) * std::pow(speed, 0.2);  // share without grains
   // Adhesion over weight (Bond number) matters most where few grains weigh on one another.
   double const clumps = 0.16 * s[cohesion] / (grains * std::pow(speed, 0.15));
   double const locked = 0.12 * s[rolling_resistance] / std::pow(grains, 0.85) / std::pow(speed, 0.12);
@@ -38,7 +38,7 @@ void spread(ChainInputs const& in, ChainStrengths const& s, ChainState& state) {
   open *=
       1 - s[wall_cohesion] / (2 + s[wall_cohesion]) / (1 + in.layer);  // grains stay where they touch the bare plate
   packing *= std::exp(-0.05 * s[capillary_bridge]);
-  open *= 1 + 0.3 * s[capillary_bridge] / speed;
+  open *= 1 + 0.2 * s[capillary_bridge] / speed;
   packing *= std::exp(-0.04 * s[electrostatic_charge] * (1 - 0.5 / grains));
   open *= std::exp(-0.4 * s[electrostatic_charge]);  // like charges spread out
   packing *= 1 - 0.10 * s[gas_drag] * speed * speed / (4 + speed * speed);
@@ -46,7 +46,7 @@ void spread(ChainInputs const& in, ChainStrengths const& s, ChainState& state) {
   packing *= 1 + 0.03 * s[youngs_modulus] * std::pow(speed, 0.3);
   packing /= 1 + 0.25 * s[shrinkage] * (1 - std::exp(-0.5 * (in.layer - 1))) / grains;
   state.relative_density = packing;
-  state.surface_coverage = 1 - open;
+  state.surface_coverage = 1 - std::min(open, 0.98);
 }
 
 /// Temperature rise of the spot over that of melting, for a plate that is scanned fast.

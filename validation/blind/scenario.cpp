@@ -37,7 +37,8 @@ class Draw {
     Answer& answer = scenario_.answer;
     Eigen::VectorXd const truth = world_.truth(scenario_.study, calibration_, answer.causes);
     take_readings(scenario_.study, truth, errors_, secret_);
-    for (Observation const& row : scenario_.study.observations) answer.truth.push_back(truth[index(row.observable)]);
+    std::erase_if(scenario_.study.observations, [](Observation const& row) { return !(row.value > 0); });
+    for (Observation const& row : scenario_.study.observations) answer.truth[row.id] = truth[index(row.observable)];
     answer.calibration.assign(calibration_.begin(), calibration_.end());
     if (errors_.heavy_tails) answer.text += "; noise with heavy tails";
     return std::move(scenario_);
@@ -126,7 +127,8 @@ class Draw {
 
   Eigen::VectorXd change_of(std::vector<HiddenCause> const& causes) {
     separation();
-    return world_.truth(train_, calibration_, causes) - plain_;
+    Eigen::VectorXd const change = world_.truth(train_, calibration_, causes) - plain_;
+    return change.array().isFinite().select(change, 0);  // where nothing melts, nobody measures a pool
   }
   double visibility_of(std::vector<HiddenCause> const& causes) {
     Eigen::VectorXd const change = change_of(causes);

@@ -37,7 +37,7 @@ struct Answer {
   std::string nearest;                             ///< that candidate
   std::vector<std::string> variables, quantities;  ///< of the right pattern, one of each
   std::vector<double> calibration;                 ///< true values
-  std::vector<double> truth;                       ///< by row of the whole study, without errors [SI]
+  std::map<std::string, double> truth;             ///< by obs_id, without errors [SI]
 
   double visibility() const;  ///< the least of its causes; 0 without
 };

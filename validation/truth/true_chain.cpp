@@ -93,7 +93,7 @@ class World {
     thickness *= 1 + 0.12 * s["blade_compliance"] * std::pow(speed, 0.8);
     double const n = thickness / grain;
     packing = 0.62 * (1 - 0.25 / n) * (1 - 0.35 * friction) * std::pow(speed, -0.05);
-    open = 0.25 * std::exp(-0.8 * n) * (1 + 0.5 * friction) * std::pow(speed, 0.2);
+    open = 0.35 * std::exp(-0.5 * n) * (1 + 0.5 * friction) * std::pow(speed, 0.2);
     double const clumps = 0.8 * (1 - std::exp(-0.2 * s["cohesion"] / n)) * std::pow(speed, -0.2);
     packing *= 1 - clumps, open *= 1 + 2.3 * clumps;
     double const locked =
@@ -104,15 +104,16 @@ class World {
     open *= (1 + rubbed) * (1 + rubbed);
     open *= 1 - 0.55 * (1 - std::exp(-0.5 * s["wall_cohesion"])) * std::pow(in.layer, -0.75);
     packing /= 1 + 0.05 * s["capillary_bridge"];
-    open *= 1 + 0.3 * s["capillary_bridge"] * std::pow(speed, -0.8);
+    open *= 1 + 0.2 * s["capillary_bridge"] * std::pow(speed, -0.8);
     packing /= 1 + 0.045 * s["electrostatic_charge"] * (1 - 0.6 / n);
     open /= 1 + 0.45 * s["electrostatic_charge"];
     packing *= 1 - 0.022 * s["gas_drag"] * std::pow(speed, 1.8) / (1 + 0.2 * speed * speed);
-    packing *= std::pow(1 + s["blade_vibration"] / (1 + 2 * speed), 0.05);
+    packing *= std::pow(1 + s["blade_vibration"] / (1 + 2.5 * speed), 0.055);
     packing *= 1 + 0.03 * s["contact.youngs_modulus"] * std::pow(speed, 0.25);
     packing /= 1 + 0.25 * s["shrinkage"] * grown() / n;
     packing *= 1 - 0.05 * other_lot(), open *= 1 + 0.5 * other_lot();
     packing *= 1 - 0.08 * s["humidity"] * in.order;
+    open = std::min(open, 0.98);
   }
 
   double grown() const { return 1 - std::pow(0.57, in.layer - 1); }
@@ -154,7 +155,7 @@ class World {
     ambient += 54 * s["heat_accumulation"] * std::log(in.layer) * (in["scan.hatch_spacing"] > 0 ? 1.5 : 1);
     double const rise = melting_point - ambient, radius = 0.5 * in["laser.spot_diameter"], h = enthalpy(absorbed);
     double const heat = density * (in["material.specific_heat"] + fusion * (1 + s["latent_heat"]) / rise);
-    double const conductivity = in["material.conductivity"] * std::pow(h / 4, 0.3 * s["variable_conductivity"]);
+    double const conductivity = in["material.conductivity"] * std::pow(h / 4, 0.45 * s["variable_conductivity"]);
     double power = in["laser.power"] * absorbed;
     power *= std::exp(-0.03 * s["evaporation"] * corner(h - 6, 1.5));
     power *= std::exp(-0.06 * s["surface_losses"] * std::pow(0.8 / in["scan.scan_speed"], 1.4));
