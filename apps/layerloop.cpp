@@ -75,6 +75,10 @@ int main(int argc, char** argv) {
   apps::add_doctor(program, action);
   apps::add_effect(program, action);
   apps::add_compare(program, action);
+  apps::add_explain(program, action);
+  apps::add_add(program, action);
+  apps::add_confirm(program, action);
+  apps::add_next(program, action);
   try {
     program.parse(argc, argv);
   } catch (CLI::ParseError const& error) {

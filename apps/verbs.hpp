@@ -32,6 +32,10 @@ void add_blind(CLI::App& program, Action& chosen);
 void add_doctor(CLI::App& program, Action& chosen);
 void add_effect(CLI::App& program, Action& chosen);
 void add_compare(CLI::App& program, Action& chosen);
+void add_explain(CLI::App& program, Action& chosen);
+void add_add(CLI::App& program, Action& chosen);
+void add_confirm(CLI::App& program, Action& chosen);
+void add_next(CLI::App& program, Action& chosen);
 
 /// Cores of this machine for each of the ranks that run on it.
 int cores_per_rank();

@@ -50,16 +50,16 @@ Eigen::Index column_of(Diagnosis const& found, std::string const& name) {
   return std::ranges::find(found.candidate_names, name) - found.candidate_names.begin();
 }
 
-std::string parity_of(Explanation const& explained, std::string const& quantity) {
-  ObservationTable const& table = explained.found.table;
+std::string parity_of(Study const& study, ObservationTable const& table, bool effects, std::string const& csv,
+                      std::string const& quantity) {
   Display const shown = display_of(quantity);
   PointSeries calibrated{.name = "calibrated", .x = {}, .y = {}, .hollow = true};
   PointSeries final_model{.name = "with the effects", .x = {}, .y = {}};
-  for (std::size_t i = 0; i < explained.study.observations.size(); ++i) {
-    Observation const& seen = explained.study.observations[i];
+  for (std::size_t i = 0; i < study.observations.size(); ++i) {
+    Observation const& seen = study.observations[i];
     if (seen.quantity != quantity) continue;
     auto const k = static_cast<Eigen::Index>(i);
-    std::string const& condition = explained.study.conditions[seen.condition].id;
+    std::string const& condition = study.conditions[seen.condition].id;
     for (auto& [series, model] : {std::pair{&calibrated, &table.calibrated}, {&final_model, &table.final_model}}) {
       series->x.push_back(shown.factor * table.measured[k]);
       series->y.push_back(shown.factor * (*model)[k]);
@@ -70,15 +70,14 @@ std::string parity_of(Explanation const& explained, std::string const& quantity)
     }
   }
   std::vector<PointSeries> series{calibrated};
-  if (any_active(explained.found)) series.push_back(final_model);
+  if (effects) series.push_back(final_model);
   return figure(coupling::scatter_plot({.x_label = "measured " + shown.label(quantity),
                                         .y_label = "model " + shown.label(""),
                                         .series = series,
                                         .diagonal = coupling::Diagonal::drawn,
                                         .width = 540,
                                         .height = 400}),
-                escape(quantity) + ": bars are one standard uncertainty, of the reading across, of the model up.",
-                "observations.csv");
+                escape(quantity) + ": bars are one standard uncertainty, of the reading across, of the model up.", csv);
 }
 
 /// Keys of inputs that vary, those of the beam first.
@@ -163,17 +162,20 @@ std::string residual_line(Explanation const& explained, std::string const& label
       "All quantities; lines at two standard deviations.", "observations.csv");
 }
 
-std::string overlay(Explanation const& explained, CandidateFinding const& effect, double prior_scale) {
+std::string overlay(Explanation const& explained, CandidateFinding const& effect, double prior_scale, bool two_sided) {
   Diagnosis const& found = explained.found;
   Eigen::Index const column = column_of(found, effect.name);
   if (column >= found.table.signatures.cols()) return "";
+  // The score of a two-sided candidate has no sign; its signature tells which way it would have to go.
+  double const way = found.table.signatures.col(column).dot(found.table.residual_before) < 0 ? -1 : 1;
+  double const factor = (two_sided ? way : 1) * std::abs(effect.strength) / prior_scale;
   std::vector<PointSeries> series;
   for (std::string const& quantity : quantities_of(explained.study)) {
     PointSeries& s = series.emplace_back(PointSeries{.name = quantity, .x = {}, .y = {}});
     for (std::size_t i = 0; i < explained.study.observations.size(); ++i) {
       if (explained.study.observations[i].quantity != quantity) continue;
       auto const k = static_cast<Eigen::Index>(i);
-      s.x.push_back(found.table.signatures(k, column) * effect.strength / prior_scale);
+      s.x.push_back(found.table.signatures(k, column) * factor);
       s.y.push_back(found.table.residual_before[k]);
     }
   }
@@ -190,10 +192,14 @@ std::string overlay(Explanation const& explained, CandidateFinding const& effect
 
 }  // namespace
 
-std::string parity_figures(Explanation const& explained) {
+std::string parity_figures(Study const& study, ObservationTable const& table, bool effects, std::string const& csv) {
   std::string figures;
-  for (std::string const& quantity : quantities_of(explained.study)) figures += parity_of(explained, quantity);
+  for (std::string const& quantity : quantities_of(study)) figures += parity_of(study, table, effects, csv, quantity);
   return pairs(figures);
+}
+
+std::string parity_figures(Explanation const& explained) {
+  return parity_figures(explained.study, explained.found.table, any_active(explained.found), "observations.csv");
 }
 
 std::string residual_maps(Explanation const& explained) {
@@ -244,12 +250,12 @@ std::string evidence_bars(Explanation const& explained) {
     if (std::isfinite(share))
       shares.bars.push_back({.name = effect->name + " alone", .value = std::max(0.0, share), .strong = effect->active});
   }
-  std::string figures =
-      figure(coupling::lying_bars(evidence),
-             "Orange: in the verdict. Kept: share of the signature that calibration cannot swallow; of "
-             "an effect with little kept "
-             "these data say little.",
-             "candidates.csv");
+  std::string figures = figure(coupling::lying_bars(evidence),
+                               "Each by itself, from its signature at the calibrated model, before any refit; orange: "
+                               "in the verdict. Kept: share of the signature that calibration cannot swallow; of "
+                               "an effect with little kept "
+                               "these data say little.",
+                               "candidates.csv");
   if (found.chi2_before > found.dof) {
     shares.bars.push_back({.name = "the verdict", .value = std::max(0.0, found.explained)});
     shares.bars.push_back({.name = "any smooth correction", .value = found.smooth_explained, .strong = false});
@@ -266,7 +272,8 @@ std::string signature_overlays(Explanation const& explained) {
   std::string figures;
   for (CandidateFinding const* effect : tested(explained.found, most_overlays)) {
     auto const candidate = std::ranges::find(explained.candidates, effect->name, &Candidate::name);
-    if (candidate != explained.candidates.end()) figures += overlay(explained, *effect, candidate->prior_scale);
+    if (candidate != explained.candidates.end())
+      figures += overlay(explained, *effect, candidate->prior_scale, candidate->two_sided);
   }
   return pairs(figures);
 }
@@ -319,7 +326,7 @@ std::string waterfall_bars(Explanation const& explained) {
                 "waterfall.csv");
 }
 
-std::string next_experiments(Explanation const& explained) {
+std::string next_table(Explanation const& explained) {
   if (explained.next.empty()) return "";
   std::string rows;
   for (NextExperiment const& next : explained.next) {

@@ -91,6 +91,7 @@ json definitions() {
       {"chi2_after", "with the effects of the verdict, calibrated anew"},
       {"explained", "share of the excess of chi2 over dof that the effects take away"},
       {"smooth_explained", "the same of any smooth correction, each condition predicted from all others"},
+      {"parameters", "value: with the effects; calibrated_value: without them"},
       {"model_runs", "passes over all conditions of the study"},
       {"conditions", "of the next experiment, in SI units"},
   };
@@ -199,16 +200,15 @@ json explain_summary(Explanation const& explained) {
   }
   for (std::size_t k = 0; k < found.parameters.size(); ++k) {
     ParameterFinding const& p = found.parameters[k];
-    double const with_effects = found.final_point.calibration.size() > static_cast<Eigen::Index>(k)
-                                    ? found.final_point.calibration[static_cast<Eigen::Index>(k)]
-                                    : p.value;
+    Eigen::VectorXd const& calibrated = found.calibrated.calibration;
+    auto const at = static_cast<Eigen::Index>(k);
     all["parameters"].push_back({{"name", p.name},
                                  {"mean", number(p.mean)},
                                  {"sd", number(p.sd)},
                                  {"value", number(p.value)},
                                  {"u", number(p.u)},
                                  {"pull", number(p.pull)},
-                                 {"final_value", number(with_effects)}});
+                                 {"calibrated_value", number(at < calibrated.size() ? calibrated[at] : p.value)}});
   }
   for (OutlierFinding const& outlier : found.outliers)
     all["outliers"].push_back({{"obs_id", outlier.obs_id}, {"z", number(outlier.z)}});
@@ -230,6 +230,27 @@ void write_explanation(std::filesystem::path const& folder, Explanation const& e
   write_file(folder / "summary.json", explain_summary(explained).dump(2) + "\n");
 }
 
+std::string nothing_to_separate(Explanation const& explained) {
+  std::string const name = name_of(explained.found.verdict);
+  if (explained.found.verdict == Verdict::GROUP)
+    return fmt::format("{}: within the range of these conditions no measurement of these quantities tells them apart",
+                       name);
+  return fmt::format("{}: no candidates are left to be told apart", name);
+}
+
+void write_proposals(std::filesystem::path const& folder, Explanation const& explained) {
+  json summary{{"verb", "next"},
+               {"study", explained.study.name},
+               {"version", LAYERLOOP_VERSION},
+               {"verdict", name_of(explained.found.verdict)},
+               {"next", json::array()},
+               {"model_runs", number(explained.found.passes)}};
+  for (NextExperiment const& next : explained.next) summary["next"].push_back(proposal(next));
+  write_explain_tables(folder, explained);
+  write_file(folder / "report.html", next_page(explained));
+  write_file(folder / "summary.json", summary.dump(2) + "\n");
+}
+
 ReadExplanation read_explanation(std::filesystem::path const& summary) {
   std::filesystem::path const path = std::filesystem::is_directory(summary) ? summary / "summary.json" : summary;
   json const all = json::parse(read_file(path), nullptr, false);
@@ -238,11 +259,21 @@ ReadExplanation read_explanation(std::filesystem::path const& summary) {
         fmt::format("{}: not a summary of explain (no \"verb\": \"explain\" in it) give --from the "
                     "summary.json that `layerloop explain` wrote",
                     path.string()));
-  ReadExplanation read{.verdict = all.at("verdict"), .sentence = all.at("sentence"), .effects = {}, .calibration = {}};
+  ReadExplanation read{.verdict = all.at("verdict"),
+                       .sentence = all.at("sentence"),
+                       .addition = {},
+                       .groups = {},
+                       .pattern = all.at("pattern")};
   auto const value = [](json const& entry) { return entry.is_number() ? entry.get<double>() : std::nan(""); };
-  for (json const& effect : all.at("effects"))
-    read.effects.push_back({effect.at("name"), value(effect.at("strength")), value(effect.at("u_strength"))});
-  for (json const& p : all.at("parameters")) read.calibration[p.at("name")] = value(p.at("final_value"));
+  for (json const& effect : all.at("effects")) {
+    read.addition.effects.push_back({effect.at("name"), value(effect.at("strength")), value(effect.at("u_strength"))});
+    read.groups.push_back(effect.at("group"));
+  }
+  for (json const& p : all.at("parameters")) {
+    read.addition.calibration_without[p.at("name")] = value(p.at("calibrated_value"));
+    read.addition.calibration_with[p.at("name")] = value(p.at("value"));
+  }
+  read.addition.sigma2 = value(all.at("sigma2"));
   return read;
 }
 

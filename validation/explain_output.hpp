@@ -1,9 +1,9 @@
 #pragma once
 #include <filesystem>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "validation/before_after.hpp"
 #include "validation/explanation.hpp"
 
 namespace layerloop::validation {
@@ -20,15 +20,18 @@ nlohmann::json explain_summary(Explanation const& explained);
 /// summary.json, report.html and the tables behind its pictures. \throws FileError
 void write_explanation(std::filesystem::path const& folder, Explanation const& explained);
 
-/// Verdict, effects and calibration of an explanation that was written, for the verbs that build on it.
-struct FoundEffect {
-  std::string name;
-  double strength = 0, u_strength = 0;
-};
+/// Why there is no proposal.
+std::string nothing_to_separate(Explanation const& explained);
+
+/// summary.json, report.html and next.csv of the verb next. \throws FileError
+void write_proposals(std::filesystem::path const& folder, Explanation const& explained);
+
+/// An explanation that was written, for the verbs that build on it.
 struct ReadExplanation {
   std::string verdict, sentence;
-  std::vector<FoundEffect> effects;
-  std::map<std::string, double> calibration;  ///< parameter -> value with the effects in [SI]
+  Addition addition;
+  std::vector<std::vector<std::string>> groups;  ///< by effect: candidates that the data could not tell from it
+  std::string pattern;                           ///< that is left over, in words
 };
 /// \param summary  summary.json, or the folder that holds it \throws InputError  it is not one of `explain`; FileError
 ReadExplanation read_explanation(std::filesystem::path const& summary);

@@ -9,6 +9,7 @@
 #include "coupling/report/html.hpp"
 #include "coupling/report/page.hpp"
 #include "validation/explain_figures.hpp"
+#include "validation/explain_output.hpp"
 
 namespace layerloop::validation {
 namespace {
@@ -57,19 +58,23 @@ std::string not_testable(Explanation const& explained) {
   std::vector<std::string> limits = explained.study.limits;
   limits.insert(limits.end(), explained.found.limits.begin(), explained.found.limits.end());
   std::string rows;
+  int count = 0;
   for (CandidateFinding const& effect : explained.found.effects) {
     auto const candidate = std::ranges::find(explained.candidates, effect.name, &Candidate::name);
     double const scale = candidate == explained.candidates.end() ? 1 : candidate->prior_scale;
     bool const blunt = effect.not_testable.empty() && effect.detectable > 2 * scale;
     if (effect.not_testable.empty() && !blunt) continue;
+    ++count;
     rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(effect.name),
                         blunt ? fmt::format("only a strength above {} would show; {} is likely",
                                             significant(effect.detectable), significant(scale))
                               : escape(effect.not_testable));
   }
   if (!rows.empty())
-    rows = "<table class=\"words\"><thead><tr><th>could not be tested</th><th>because</th></tr></thead><tbody>\n" +
-           rows + "</tbody></table>\n";
+    rows = fmt::format(
+        "<details><summary>{} effects that could not be tested, and why</summary>\n"
+        "<table class=\"words\"><tbody>\n{}</tbody></table></details>\n",
+        count, rows);
   return list(limits) + rows;
 }
 
@@ -150,10 +155,25 @@ std::string explain_page(Explanation const& explained) {
   page.add("confusion", "Which candidates look alike", confusion_matrix(explained));
   page.add("pulls", "What calibration did", pull_bars(explained));
   page.add("waterfall", "Before and after", waterfall_bars(explained));
-  page.add("next", "What to measure next", next_experiments(explained));
+  page.add("next", "What to measure next", next_table(explained));
   page.add("outliers", "Outliers", outliers(explained.found));
   page.add("assumptions", "Assumptions", assumptions(explained));
   page.add("provenance", "Provenance", provenance(explained));
+  return page.html();
+}
+
+std::string next_page(Explanation const& explained) {
+  std::string const answer = explained.next.empty() ? nothing_to_separate(explained)
+                                                    : "Measure " + proposal_in_words(explained.next.front()) + ".";
+  coupling::Page page{.title = explained.study.name,
+                      .version = LAYERLOOP_VERSION,
+                      .headline = escape(answer),
+                      .cards = cards(explained),
+                      .seed = explained.seed,
+                      .files = ""};
+  page.add("next", "What to measure next", next_table(explained));
+  page.add("evidence", "The candidates so far", evidence_bars(explained));
+  page.add("confusion", "Which candidates look alike", confusion_matrix(explained));
   return page.html();
 }
 

@@ -25,25 +25,6 @@ std::string text_cell(std::string const& text) {
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : ""; }
 
-std::string observations_csv(Explanation const& explained) {
-  ObservationTable const& table = explained.found.table;
-  std::string text =
-      "obs_id,condition_id,quantity,unit,measured,u_data,case,calibrated,with_effects,u_model,residual_before,"
-      "residual_after\n";
-  for (std::size_t i = 0; i < explained.study.observations.size(); ++i) {
-    Observation const& seen = explained.study.observations[i];
-    Display const shown = display_of(seen.quantity);
-    auto const k = static_cast<Eigen::Index>(i);
-    text += fmt::format("{},{},{},{}", text_cell(seen.id), text_cell(explained.study.conditions[seen.condition].id),
-                        seen.quantity, shown.unit);
-    for (Eigen::VectorXd const* column :
-         {&table.measured, &table.u_data, &table.base, &table.calibrated, &table.final_model, &table.u_model})
-      text += ',' + cell((*column)[k] * shown.factor);
-    text += ',' + cell(table.residual_before[k]) + ',' + cell(table.residual_after[k]) + '\n';
-  }
-  return text;
-}
-
 std::string matrix_csv(std::string const& corner, std::vector<std::string> const& rows,
                        std::vector<std::string> const& columns, Eigen::MatrixXd const& values) {
   std::string text = corner;
@@ -102,6 +83,24 @@ std::string next_csv(Explanation const& explained) {
 
 }  // namespace
 
+std::string observations_csv(Study const& study, ObservationTable const& table) {
+  std::string text =
+      "obs_id,condition_id,quantity,unit,measured,u_data,case,calibrated,with_effects,u_model,residual_before,"
+      "residual_after\n";
+  for (std::size_t i = 0; i < study.observations.size(); ++i) {
+    Observation const& seen = study.observations[i];
+    Display const shown = display_of(seen.quantity);
+    auto const k = static_cast<Eigen::Index>(i);
+    text += fmt::format("{},{},{},{}", text_cell(seen.id), text_cell(study.conditions[seen.condition].id),
+                        seen.quantity, shown.unit);
+    for (Eigen::VectorXd const* column :
+         {&table.measured, &table.u_data, &table.base, &table.calibrated, &table.final_model, &table.u_model})
+      text += ',' + cell((*column)[k] * shown.factor);
+    text += ',' + cell(table.residual_before[k]) + ',' + cell(table.residual_after[k]) + '\n';
+  }
+  return text;
+}
+
 std::vector<StageMisfit> stage_misfits(Explanation const& explained) {
   static constexpr std::array names{"dem", "laser", "heat", "solid"};
   std::map<EffectStage, StageMisfit> by_stage;
@@ -145,7 +144,7 @@ void write_explain_tables(fs::path const& folder, Explanation const& explained) 
   Diagnosis const& found = explained.found;
   std::vector<std::string> ids;
   for (Observation const& seen : explained.study.observations) ids.push_back(seen.id);
-  write_file(folder / "observations.csv", observations_csv(explained));
+  write_file(folder / "observations.csv", observations_csv(explained.study, explained.found.table));
   write_file(folder / "signatures.csv", matrix_csv("obs_id", ids, found.candidate_names, found.table.signatures));
   write_file(folder / "cosines.csv",
              matrix_csv("candidate", found.candidate_names, found.candidate_names, found.cosines));

@@ -57,9 +57,11 @@ TEST(Explain, written_and_read_again_is_the_same) {
   write_explanation(folder, explained);
   ReadExplanation const read = read_explanation(folder);
   EXPECT_EQ(read.verdict, "GROUP");
-  ASSERT_EQ(read.effects.size(), 1U);
-  EXPECT_EQ(read.effects[0].strength, 0.31);
-  EXPECT_EQ(read.calibration.at("laser.absorptivity"), 0.38);  // with the effect, not before it
+  ASSERT_EQ(read.addition.effects.size(), 1U);
+  EXPECT_EQ(read.addition.effects[0].strength, 0.31);
+  EXPECT_EQ(read.groups[0], std::vector<std::string>{"plume_attenuation"});
+  EXPECT_EQ(read.addition.calibration_with.at("laser.absorptivity"), 0.38);
+  EXPECT_EQ(read.addition.calibration_without.at("laser.absorptivity"), 0.41);
   std::string const observations = read_file(folder / "observations.csv");
   EXPECT_EQ(std::ranges::count(observations, '\n'), 61);
   EXPECT_TRUE(holds(observations, "o0,c0,pool.depth,um,"));

@@ -103,7 +103,7 @@ inline Explanation sample_explanation() {
   d.patterns_before = {{"pool.depth falls with scan.scan_speed", -9.1, 0.0002},
                        {"absorptivity falls with scan.scan_speed", -7.0, 0.001}};
   d.patterns_after = {{"pool.width rises with laser.power", 1.9, 0.8}};
-  d.parameters = {{"laser.absorptivity", 0.35, 0.07, 0.41, 0.02, 0.82}};
+  d.parameters = {{"laser.absorptivity", 0.35, 0.07, 0.38, 0.02, 0.41}};
   d.outliers = {{"o17", 4.4}};
   d.limits = {"one spot diameter only: nothing that depends on it can be told"};
   d.chi2_before = t.residual_before.squaredNorm();

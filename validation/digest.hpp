@@ -1,0 +1,10 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace layerloop::validation {
+
+/// SHA-256 of a file's bytes, as 64 hexadecimal digits. \throws FileError
+std::string sha256_of_file(std::filesystem::path const& path);
+
+}  // namespace layerloop::validation

@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "validation/explanation.hpp"
+#include "validation/next_search.hpp"
+#include "validation/refit.hpp"
+
+namespace layerloop::validation {
+
+/// The best explanation and those that the data cannot tell from it, each refitted to them.
+struct RivalFits {
+  std::vector<std::string> names;  ///< the best one first
+  std::vector<Fit> fits;
+};
+RivalFits fit_rivals(Explanation const& explained, Model& model, ResidualFrame const& frame);
+
+/// Predictions of one quantity under some conditions, and what they rest on. Shapes: by condition.
+struct RivalPredictions {
+  std::vector<Eigen::VectorXd> value;       ///< by rival
+  std::vector<Eigen::MatrixXd> derivative;  ///< by rival: (conditions, free numbers), for one prior scale
+};
+
+/// Every quantity under the conditions of a study. \param sensitive  also the derivatives
+std::map<std::string, RivalPredictions> predict_rivals(Study const& conditions_of,
+                                                       std::vector<std::string> const& quantities,
+                                                       std::vector<Candidate> const& candidates,
+                                                       RivalFits const& rivals, ModelOf const& model_of,
+                                                       bool sensitive);
+
+/// Squared distance that stays between two rivals when one of them is refitted to the other's predictions, with a new
+/// reading among the data. All in standard deviations. \param row  difference of the new reading, then its derivatives
+double separation(Eigen::VectorXd const& difference, Eigen::MatrixXd const& derivatives, double new_difference,
+                  Eigen::RowVectorXd const& new_derivatives);
+
+}  // namespace layerloop::validation
