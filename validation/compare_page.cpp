@@ -40,7 +40,10 @@ std::string cards(Comparison const& compared) {
   if (!compared.patterns.empty())
     all += card("Strongest pattern", "p " + chance(compared.patterns.front().p),
                 escape(compared.patterns.front().text) + "; p is that of the whole family");
-  return all + card("Cost", significant(compared.passes), "passes of the model over the data") + "</div>\n";
+  return all +
+         card("Cost", significant(compared.passes),
+              "passes of the model over the data; what the cache held counts nothing") +
+         "</div>\n";
 }
 
 std::string quantity_table(Comparison const& compared) {
@@ -81,7 +84,8 @@ std::string stage_table(Comparison const& compared) {
   return "<div class=\"scroll\"><table class=\"figures\"><thead><tr><th>stage</th><th>readings</th><th>chi&sup2;</th>"
          "<th>as simulated</th><th>with the measured absorptivity</th><th>which means</th></tr></thead><tbody>\n" +
          rows +
-         "</tbody></table></div>\n<p class=\"remark\">Where a quantity that one stage hands to the next was measured, "
+         "</tbody></table></div>\n<p class=\"remark\">Where a quantity that one stage hands to the next was measured "
+         "under the same conditions, "
          "the later stage is run again with the measured value in the place of the simulated one.</p>\n";
 }
 

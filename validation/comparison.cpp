@@ -123,21 +123,18 @@ void summarise(Comparison& result, Study const& known, Eigen::VectorXd const& di
 }
 
 /// The heat stage once more, with the light that was measured.
-void clamp_light(Comparison& result, Study const& known, Prediction const& prediction, Eigen::MatrixXd const& by_input,
-                 ModelMaker const& make) {
+void clamp_light(Comparison& result, Study const& known, Eigen::VectorXd const& simulated, ModelMaker const& make) {
   std::optional<ClampedStudy> const clamped = with_measured_absorptivity(known);
   if (!clamped) return;
-  ClampedResult const found = run_clamped(*clamped, make);
+  ClampedResult const found = run_clamped(*clamped, simulated, make);
   result.passes += found.passes;
   auto const stage = std::ranges::find(result.stages, EffectStage::heat, &ComparedStage::stage);
   if (found.rows.empty() || stage == result.stages.end()) return;
-  Eigen::MatrixXd const c = covariance(known, prediction) + by_input * by_input.transpose();
-  Eigen::VectorXd const difference = measured_values(known) - at_observations(known, prediction.value);
   stage->clamped = "absorptivity";
   stage->clamped_points = found.rows.size();
-  stage->chi2_of_clamped_points = chi2_of(difference, c, found.rows);
+  stage->chi2_of_clamped_points = found.chi2_simulated;
   stage->chi2_clamped = found.chi2;
-  stage->sentence = words_of_clamp(stage->chi2_of_clamped_points, found.chi2, found.rows.size());
+  stage->sentence = words_of_clamp(found.chi2_simulated, found.chi2, found.rows.size());
 }
 
 }  // namespace
@@ -169,7 +166,7 @@ Comparison compare(Study const& study, ModelMaker const& make, std::uint64_t see
     PatternSearch const search(generic_patterns(known, simulated, whiten), nothing_taken_out, seed);
     result.patterns = search.find(result.standardised, 1);
     result.passes = model->passes();
-    clamp_light(result, known, prediction, by_input, make);
+    clamp_light(result, known, simulated, make);
   }
   result.notes = model->notes();
   return result;

@@ -43,7 +43,7 @@ struct ComparedStage {
   double chi2 = 0;                          ///< as simulated
   std::optional<double> chi2_clamped = {};  ///< with the measured upstream quantity in the place of the simulated one
   std::size_t clamped_points = 0;           ///< that both are taken over
-  double chi2_of_clamped_points = 0;        ///< as simulated
+  double chi2_of_clamped_points = 0;        ///< as simulated, with the uncertainties of the clamped ones
   std::string clamped = {};                 ///< which quantity
   std::string sentence = {};
 };

@@ -83,7 +83,7 @@ std::vector<std::string> mesh_settings(Case const& base, std::vector<Case> const
   }
   if (!base.heat.size.empty()) return settings;
   std::vector<double> size = coupling::with_plate(placed, estimate).heat.size;
-  for (Case const& other : others) size[2] = std::max(size[2], 2 * coupling::estimate_pool(other).pool.depth);
+  for (Case const& other : others) size[2] = std::max(size[2], 3 * coupling::estimate_pool(other).pool.depth);
   settings.push_back(fmt::format("heat.size=[{}]", fmt::join(size, ", ")));
   return settings;
 }

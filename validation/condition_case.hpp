@@ -36,8 +36,8 @@ Eigen::VectorXd prior_means(Study const& study);
 std::string setting(std::string const& key, double value);
 
 /// Cells and plate of a bare-plate condition, chosen once, so that every point of the model has the same mesh: where
-/// the case leaves them open, cells of an eighth of the spot, at most a third of the estimated depth, and a plate that
-/// is twice as deep as the deepest of these pools. \param others  cases that must fit on the same plate
+/// the case leaves them open, cells of an eighth of the spot, at most a third of the estimated depth, and a plate
+/// three times as deep as the deepest of these pools. \param others  cases that must fit on the same plate
 std::vector<std::string> mesh_settings(Case const& base, std::vector<Case> const& others);
 
 }  // namespace layerloop::validation

@@ -90,7 +90,7 @@ std::optional<ClampedStudy> with_measured_absorptivity(Study const& study) {
   return clamped;
 }
 
-ClampedResult run_clamped(ClampedStudy const& clamped, ModelMaker const& make) {
+ClampedResult run_clamped(ClampedStudy const& clamped, Eigen::VectorXd const& simulated, ModelMaker const& make) {
   std::unique_ptr<Model> const model = make(clamped.study), shifted = make(clamped.shifted);
   Study study = clamped.study;
   ModelPoint const base{prior_means(study), {}, 0};
@@ -104,10 +104,10 @@ ClampedResult run_clamped(ClampedStudy const& clamped, ModelMaker const& make) {
   }
   study.observations = known;
   if (known.empty()) return result;
-  Eigen::VectorXd const simulated = at_observations(study, prediction.value);
+  Eigen::VectorXd const with_light = at_observations(study, prediction.value);
   Eigen::MatrixXd c = covariance(study, prediction);
   auto const change_to = [&](Model& other, ModelPoint const& point) -> Eigen::VectorXd {
-    Eigen::VectorXd const change = at_observations(study, other.predict(point).value) - simulated;
+    Eigen::VectorXd const change = at_observations(study, other.predict(point).value) - with_light;
     return change.array().isFinite().select(change, 0);
   };
   for (std::size_t p = 0; p < study.calibration.size(); ++p) {
@@ -123,7 +123,9 @@ ClampedResult run_clamped(ClampedStudy const& clamped, ModelMaker const& make) {
     for (std::size_t b = 0; b < known.size(); ++b)
       if (known[a].condition == known[b].condition) c(index(a), index(b)) += by_light[index(a)] * by_light[index(b)];
   }
-  result.chi2 = Whitening(c)(measured_values(study) - simulated).squaredNorm();
+  Whitening const whiten(c);
+  result.chi2 = whiten(measured_values(study) - with_light).squaredNorm();
+  result.chi2_simulated = whiten(measured_values(study) - simulated(result.rows)).squaredNorm();
   result.passes = model->passes() + shifted->passes();
   return result;
 }

@@ -23,10 +23,12 @@ std::optional<ClampedStudy> with_measured_absorptivity(Study const& study);
 struct ClampedResult {
   std::vector<Eigen::Index> rows;  ///< of these, those that have an answer
   double chi2 = 0;
+  double chi2_simulated = 0;  ///< of the values as simulated, with the same uncertainties
   double passes = 0;
 };
 /// What calibration numbers and the measured absorptivity are uncertain by counts as uncertainty.
-ClampedResult run_clamped(ClampedStudy const& clamped, ModelMaker const& make);
+/// \param simulated  by observation of the study that it comes from
+ClampedResult run_clamped(ClampedStudy const& clamped, Eigen::VectorXd const& simulated, ModelMaker const& make);
 
 /// Which stage is at fault, from chi2 as simulated and clamped.
 std::string words_of_clamp(double simulated, double clamped, std::size_t points);

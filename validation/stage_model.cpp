@@ -147,9 +147,17 @@ class StageModel final : public Model {
   /// \param second_grid  for the discretisation error of the pool; the figures are the same either way
   RunReadings run(Job const& job, Case checked, bool second_grid) {
     checked.melt.two_grids = job.on_plate && second_grid;
-    StageRun const done = run_stage(job.verb, checked, job.places, cache_, comm_);
-    computed_ += done.computed;
-    return done.readings;
+    try {
+      StageRun const done = run_stage(job.verb, checked, job.places, cache_, comm_);
+      computed_ += done.computed;
+      return done.readings;
+    } catch (StoppedBySignal const&) {
+      throw_stopped();  // the verb's own words speak of its output folder
+    }
+  }
+
+  [[noreturn]] static void throw_stopped() {
+    throw StoppedBySignal("stopped by a signal (as asked) what was computed is in the cache: run it again to go on");
   }
 
   ModelPoint base_point() const { return {prior_means(study_), Eigen::VectorXd::Zero(index(candidates_.size())), 0}; }
@@ -172,8 +180,7 @@ class StageModel final : public Model {
           samples[i].push_back(found == readings.readings.end() ? Reading{std::nan("")} : found->second);
         }
       }
-      if (comm_.any(stop_requested()))
-        throw StoppedBySignal("stopped by a signal (as asked) what was computed is in the cache: run it again");
+      if (comm_.any(stop_requested())) throw_stopped();
       progress.update(static_cast<double>(j + 1));
     }
     return samples;
