@@ -26,7 +26,7 @@ Settings switched_on(Effect const& effect, double strength) {
 /// What an effect stands for where the case gives it nothing to act with, at strength 1.
 constexpr double reference_bond_number = 10;  ///< pull-off force over the weight of a mean grain
 constexpr double reference_rolling_friction = 0.2;
-constexpr double reference_oxide = 50e-9;  ///< [m]
+constexpr double reference_oxide = 10e-9;  ///< [m], some times the native film
 
 /// Cohesion where there is none: SJKR2 whose pull-off force, which goes as the cube of the energy density, is
 /// `strength` times the reference for the grain of mean volume.
