@@ -6,8 +6,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "core/write_file.hpp"

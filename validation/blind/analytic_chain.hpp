@@ -42,7 +42,7 @@ class AnalyticChain : public Model {
   std::vector<std::pair<Eigen::Index, InputChange>> input_errors_;  ///< of candidates
   std::vector<std::pair<Eigen::Index, ChainEffect>> effects_;       ///< of candidates
   std::vector<Reading> readings_;                                   ///< of candidates
-  std::set<std::vector<double>> computed_;  ///< calibration and strengths of what acts inside
+  std::set<std::vector<double>> computed_;                          ///< calibration and strengths of what acts inside
 };
 
 /// Everything that may be wrong with the chain: effects of the catalogue, its discretisation, input and reading errors.

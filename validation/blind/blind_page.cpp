@@ -128,22 +128,61 @@ std::string class_table(std::vector<Opened> const& all) {
          "cells, offsets, scales; r: what real data carry.</p>\n";
 }
 
+std::string markdown_row(std::vector<std::string> const& cells) {
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+
+/// The same tables for documents.
+std::string markdown(std::vector<Opened> const& all, std::vector<std::string> const& methods) {
+  std::vector<Score> const scores = scores_of(all);
+  std::string text =
+      markdown_row({"score", "among", "count", "value", "95 % interval", "to ship", "target", "passes by the bound"}) +
+      "|---|---|---|---|---|---|---|---|\n";
+  for (Score const& s : scores)
+    text += markdown_row({s.name, s.of, s.is_share ? fmt::format("{} of {}", s.hits, s.n) : fmt::format("{}", s.n),
+                          shown(s, s.value), interval_of(s), (s.high_is_good ? ">= " : "<= ") + shown(s, s.minimum),
+                          shown(s, s.target), passed(s)});
+  if (!methods.empty()) {
+    std::vector<std::string> head{"score", "among", "this program"};
+    head.insert(head.end(), methods.begin(), methods.end());
+    text += "\n" + markdown_row(head) + markdown_row(std::vector<std::string>(head.size(), "---"));
+    std::vector<std::vector<Score>> columns;
+    for (std::size_t m = 0; m < methods.size(); ++m) columns.push_back(scores_of(all, m));
+    for (std::size_t i = 0; i < columns.front().size(); ++i) {
+      if (!columns.front()[i].is_share) continue;
+      std::vector<std::string> row{scores[i].name, scores[i].of, percent(scores[i].value)};
+      for (auto const& column : columns) row.push_back(percent(column[i].value));
+      text += markdown_row(row);
+    }
+  }
+  text += "\n" + markdown_row({"failed", "score", "hidden", "nearest other", "said"}) + "|---|---|---|---|---|\n";
+  std::map<std::string, Opened const*> by_id;
+  for (Opened const& one : all) by_id[one.answer.id] = &one;
+  for (Score const& score : scores)
+    for (std::string const& id : score.failures)
+      text += markdown_row({id, score.name, by_id[id]->answer.text,
+                            fmt::format("{} {:.2f}", by_id[id]->answer.nearest, by_id[id]->answer.largest_cosine),
+                            verdict_words(*by_id[id])});
+  return text;
+}
+
 std::string csv_field(std::string const& text) { return "\"" + text + "\""; }
 
 std::string scenarios_csv(std::vector<Opened> const& all) {
   std::string text =
       "id,class,hidden,lambda,largest_cosine,nearest,verdict,named,strength,u_strength,true_strength,sigma2,model_runs,"
-      "rms_before,rms_after,whitened_rms_after\n";
+      "rms_calibrated,rms_named,rms_smooth,whitened_rms_named\n";
   for (Opened const& one : all) {
     Answer const& a = one.answer;
     Judgement const& j = one.judgement;
     std::string names;
     for (auto const& named : j.named) names += (names.empty() ? "" : " + ") + named.name;
-    text += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", a.id, letter_of(a.kind), csv_field(a.text), a.visibility(),
-        a.largest_cosine, a.nearest, j.verdict, csv_field(names), j.named.empty() ? NAN : j.named.front().strength,
-        j.named.empty() ? NAN : j.named.front().u_strength, a.strengths.empty() ? NAN : a.strengths.front(), j.sigma2,
-        j.passes, one.forecast.rms_before, one.forecast.rms_after, one.forecast.whitened_after);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", a.id, letter_of(a.kind),
+                        csv_field(a.text), a.visibility(), a.largest_cosine, a.nearest, j.verdict, csv_field(names),
+                        j.named.empty() ? NAN : j.named.front().strength,
+                        j.named.empty() ? NAN : j.named.front().u_strength,
+                        a.strengths.empty() ? NAN : a.strengths.front(), j.sigma2, j.passes, one.forecast.calibrated,
+                        one.forecast.named, one.forecast.smooth, one.forecast.whitened);
   }
   return text;
 }
@@ -200,6 +239,7 @@ std::string write_blind_report(std::filesystem::path const& folder) {
   for (std::size_t m = 0; m < methods.size(); ++m) summary["others"][methods[m]] = json_of(scores_of(all, m));
   write_file(folder / "score.json", summary.dump(1) + "\n");
   write_file(folder / "score.csv", score_csv(scores));
+  write_file(folder / "score.md", markdown(all, methods));
   write_file(folder / "scenarios.csv", scenarios_csv(all));
 
   std::string const set = manifest.at("set"), hash = verdicts.at("thresholds_sha256");

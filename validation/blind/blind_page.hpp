@@ -7,7 +7,8 @@
 
 namespace layerloop::validation {
 
-/// Scores an opened blind test into DIR/score.json, score.csv, scenarios.csv and report.html. \return the table as text
+/// Scores an opened blind test into DIR/score.json, score.csv, score.md, scenarios.csv and report.html. \return the
+/// table as text
 std::string write_blind_report(std::filesystem::path const& folder);
 
 /// The table for terminals: one line a score.

@@ -14,7 +14,6 @@
 #include "validation/blind/analytic_design.hpp"
 #include "validation/blind/seal.hpp"
 #include "validation/blind/study_writer.hpp"
-#include "validation/error_model.hpp"
 #include "validation/study_file.hpp"
 
 namespace layerloop::validation {
@@ -22,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 /// The chain is not the program: this only makes the folder a study.
 constexpr auto case_text = R"([powder]
@@ -133,32 +130,6 @@ json verdict_of(World const& world, fs::path const& folder, Listed const& listed
   return verdict;
 }
 
-double rms(Eigen::VectorXd const& values) {
-  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
-}
-
-/// \param truth  by obs_id
-Forecast forecast_of(World const& world, Study const& holdout, std::vector<std::string> const& withheld,
-                     std::map<std::string, double> const& truth, Judgement const& judgement) {
-  std::vector<Candidate> const candidates = known_candidates(world, holdout, withheld);
-  auto const model = world.model(holdout, candidates);
-  auto const vector = [](std::vector<double> const& v) {
-    return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd const>(v.data(), index(v.size())));
-  };
-  ModelPoint const before{vector(judgement.calibrated), Eigen::VectorXd::Zero(index(candidates.size())), 1},
-      after{vector(judgement.final_calibration), vector(judgement.final_strengths), 1};
-  Eigen::VectorXd truths(index(holdout.observations.size())), u(truths.size());
-  for (Eigen::Index i = 0; i < truths.size(); ++i) {
-    Observation const& row = holdout.observations[static_cast<std::size_t>(i)];
-    truths[i] = truth.at(row.id), u[i] = row.u_stat;
-  }
-  Prediction const first = model->predict(before), second = model->predict(after);
-  Eigen::VectorXd const a = at_observations(holdout, first.value), b = at_observations(holdout, second.value);
-  Whitening const whiten(covariance(holdout, second));
-  return {rms((a - truths).cwiseQuotient(u)), rms((b - truths).cwiseQuotient(u)),
-          rms(whiten(measured_values(holdout) - b))};
-}
-
 }  // namespace
 
 std::string const& name_of(BlindSet set) {
@@ -224,11 +195,12 @@ std::vector<Opened> open_blind_test(fs::path const& folder, std::uint64_t seed) 
     Answer const answer = json::parse(unseal(checked_box(folder, all[i]), seed, manifest.at("set"), all[i].id));
     Judgement const judgement = json::parse(read_file(at / "verdict.json")).at("judgement");
     Study const training = read_study(at), holdout = read_study(at, Role::holdout);
-    Forecast const forecast = forecast_of(*world, holdout, all[i].withheld, answer.truth, judgement);
+    Forecast const forecast = forecast_of(*world, training, holdout, all[i].withheld, answer.truth, judgement);
     json opened = answer;
-    opened["forecast"] = {{"rms_before", forecast.rms_before},
-                          {"rms_after", forecast.rms_after},
-                          {"whitened_rms_after", forecast.whitened_after}};
+    opened["forecast"] = {{"calibrated", forecast.calibrated},
+                          {"named", forecast.named},
+                          {"smooth", forecast.smooth},
+                          {"whitened", forecast.whitened}};
     write_json(at / "answer.json", opened);
   });
   return opened_blind_test(folder);
@@ -242,7 +214,7 @@ std::vector<Opened> opened_blind_test(fs::path const& folder) {
     json const& forecast = answer.at("forecast");
     opened.push_back({answer.get<Answer>(),
                       verdict.at("judgement").get<Judgement>(),
-                      {forecast.at("rms_before"), forecast.at("rms_after"), forecast.at("whitened_rms_after")},
+                      {forecast.at("calibrated"), forecast.at("named"), forecast.at("smooth"), forecast.at("whitened")},
                       verdict.at("others").get<std::vector<Judgement>>()});
   }
   return opened;

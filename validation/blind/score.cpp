@@ -201,12 +201,16 @@ void add_figures(Table& table) {
       Table::Take::mean, high, 0.88, 0.92);
   table.figure(
       "held-out error before over after, median", "one effect, lambda >= 10", strong,
-      [](Opened const& one, Judgement const&) -> Value { return one.forecast.rms_before / one.forecast.rms_after; },
+      [](Opened const& one, Judgement const&) -> Value { return one.forecast.calibrated / one.forecast.named; },
       Table::Take::median, high, 2, 3);
   table.figure(
+      "the same of a nameless smooth correction", "one effect, lambda >= 10", strong,
+      [](Opened const& one, Judgement const&) -> Value { return one.forecast.calibrated / one.forecast.smooth; },
+      Table::Take::median, high, 0, 0);
+  table.figure(
       "whitened held-out error after, median", "one effect, lambda >= 10", strong,
-      [](Opened const& one, Judgement const&) -> Value { return one.forecast.whitened_after; }, Table::Take::median,
-      low, 1.5, 1.2);
+      [](Opened const& one, Judgement const&) -> Value { return one.forecast.whitened; }, Table::Take::median, low, 1.5,
+      1.2);
   table.figure(
       "passes over the data, mean", "all", [](Answer const&) { return true; },
       [](Opened const&, Judgement const& j) -> Value { return j.passes; }, Table::Take::mean, low, 60, 30);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "validation/blind/forecast.hpp"
 #include "validation/blind/judgement.hpp"
 #include "validation/blind/scenario.hpp"
 
@@ -13,12 +14,6 @@ struct Interval {
   double low, high;
 };
 Interval wilson(std::size_t k, std::size_t n);
-
-/// How well held-out rows were predicted.
-struct Forecast {
-  double rms_before = 0, rms_after = 0;  ///< from the truth, in units of u_stat: calibrated, and with what was found
-  double whitened_after = 0;             ///< rms of the readings, whitened
-};
 
 /// One scenario after it was opened.
 struct Opened {
