@@ -208,7 +208,7 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
   if (weak && say_outliers(evidence, diagnosis)) return;
   if (weak)
     return say(
-        diagnosis, diagnosis.explained <= limit.part ? Verdict::UNKNOWN : Verdict::PARTIAL,
+        diagnosis, Verdict::UNKNOWN,
         fmt::format("No known effect explains this: {} takes {:.0f} % of the excess, a smooth correction {:.0f} %. "
                     "What is left looks like: {}.",
                     names, 100 * diagnosis.explained, 100 * evidence.smooth_explained, top_patterns(now)));
