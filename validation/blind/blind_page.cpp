@@ -33,6 +33,7 @@ std::string interval_of(Score const& score) {
 /// "yes": by the bound of the interval; "value": the value alone is beyond the minimum.
 std::string passed(Score const& score) {
   if (score.n == 0) return "none drawn";
+  if (std::isnan(score.minimum)) return "no bar";
   return score.passes_for_sure() ? "yes" : score.passes() ? "value only" : "no";
 }
 

@@ -16,7 +16,7 @@ Interval wilson(std::size_t k, std::size_t n) {
   return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
 }
 
-bool Score::passes() const { return high_is_good ? value >= minimum : value <= minimum; }
+bool Score::passes() const { return std::isnan(minimum) || (high_is_good ? value >= minimum : value <= minimum); }
 
 bool Score::passes_for_sure() const {
   if (!is_share) return passes();
@@ -206,7 +206,7 @@ void add_figures(Table& table) {
   table.figure(
       "the same of a nameless smooth correction", "one effect, lambda >= 10", strong,
       [](Opened const& one, Judgement const&) -> Value { return one.forecast.calibrated / one.forecast.smooth; },
-      Table::Take::median, high, 0, 0);
+      Table::Take::median, high, NAN, NAN);
   table.figure(
       "whitened held-out error after, median", "one effect, lambda >= 10", strong,
       [](Opened const& one, Judgement const&) -> Value { return one.forecast.whitened; }, Table::Take::median, low, 1.5,

@@ -31,7 +31,7 @@ struct Score {
   double value = 0;             ///< share, or figure
   Interval interval{0, 1};      ///< of a share
   bool high_is_good = true;
-  double minimum = 0, target = 0;
+  double minimum = 0, target = 0;          ///< not a number: no bar
   std::vector<std::string> failures = {};  ///< ids
 
   bool passes() const;           ///< the value is beyond the minimum
