@@ -2,7 +2,7 @@
 """Spread beds from LIGGGHTS, as study folders.
 
 A blade spreads grains from a pit over a recess; grains, walls and measures are those of the case, the program is
-another: LIGGGHTS 3.8 (Kloss et al., Prog. Comput. Fluid Dyn. 12 (2012) 140), with sharp edges where layerloop rounds.
+another: LIGGGHTS 3.8 (Kloss et al., Prog. Comput. Fluid Dyn. 12 (2012) 140).
   grains.py FOLDER [NAME...]   writes FOLDER/grains_null, grains_cohesion, grains_rolling
 """
 import pathlib
@@ -47,7 +47,7 @@ gap_length = "50 um"
 deposition_length = "400 um"
 width = "130 um"
 blade_width = "50 um"
-edge_radius = "1 um"
+edge_radius = "5 um"
 blade_clearance = "0 um"
 [run]
 layers = 1
@@ -118,21 +118,30 @@ def extrude(path, corners, longest=60e-6):
     pathlib.Path(path).write_text(text + "endsolid s\n")
 
 
+def arc(x, z, radius, begin, end):
+    """Points on a circle, angles in degrees."""
+    return [(x + radius * np.cos(t), z + radius * np.sin(t)) for t in np.radians(np.linspace(begin, end, 5))]
+
+
 def spread(where, speed, layer, seed, model, cohesion=0.0, rolling=0.1):
     """Grains after the stroke: x, y, z, radius; x = 0 where the pit begins, z = 0 on the platforms."""
     where = pathlib.Path(where)
     if not (where / "bed.dump").exists():
         where.mkdir(parents=True, exist_ok=True)
         end = PIT + GAP + ZONE
-        extrude(where / "base.stl", [(-58e-6, 0), (0, 0), (0, -DEPTH), (PIT, -DEPTH), (PIT, 0), (PIT + GAP, 0),
-                                     (PIT + GAP, -layer), (end, -layer), (end, 0), (890e-6, 0)])
-        extrude(where / "blade.stl", [(-BLADE, 600e-6), (-BLADE, 0), (0, 0), (0, 600e-6)])
+        e, b = 20e-6, 5e-6  # radii of the platforms' edges and of the blade's
+        extrude(where / "base.stl",
+                [(-58e-6, 0), (0, 0), (0, -DEPTH), (PIT, -DEPTH)] + arc(PIT + e, -e, e, 180, 90) +
+                arc(PIT + GAP - e, -e, e, 90, 0) + [(PIT + GAP, -layer), (end, -layer)] +
+                arc(end + e, -e, e, 180, 90) + [(890e-6, 0)])
+        extrude(where / "blade.stl", [(-BLADE, 600e-6)] + arc(-BLADE + b, b, b, 180, 270) + arc(-b, b, b, 270, 360) +
+                [(0, 600e-6)])
         shear = MODULUS / 2.6
         dt = 0.149 * np.pi * 10.5e-6 * np.sqrt(DENSITY / shear) / (0.1631 * 0.3 + 0.8766)
         (where / "in.deck").write_text(DECK.format(
             width=WIDTH, modulus=MODULUS, rolling=rolling, cohesion=cohesion, model=model, dt=dt, pit=PIT,
             pit_inside=PIT - 1e-6, floor=-DEPTH + 1e-6, density=DENSITY, seed=seed, grains=GRAINS, speed=speed,
-            settle=int(5e-3 / dt), stroke=int((end + BLADE) / speed / dt), rest=int(3e-3 / dt)))
+            settle=int(5e-3 / dt), stroke=int((end + BLADE) / speed / dt), rest=int(6e-3 / dt)))
         for attempt in range(3):  # its MPI sometimes gives up while it starts
             with open(where / "out.txt", "w") as out:
                 subprocess.run(["liggghts", "-in", "in.deck", "-log", "none"], cwd=where, stdout=out, stderr=out)

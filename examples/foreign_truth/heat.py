@@ -35,7 +35,7 @@ kind = "track"
 scan_speed = "0.8 m/s"
 track_length = "240 um"
 [heat]
-cell_size = "7 um"
+cell_size = "5 um"
 {extra}"""
 
 CALIBRATION = '[[calibration]]\nkey = "laser.absorptivity"\nmean = 0.35\nsd = 0.03\n'
