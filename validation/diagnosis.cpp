@@ -106,10 +106,10 @@ std::vector<CandidateFinding> findings(Workbench const& bench, Signatures const&
     found.active = true;
     found.strength = selection.fit.point.strengths[index(chosen)];
     found.u_strength = u[column] * bench.candidates[chosen].prior_scale;
-    double const best = selection.trials[a].front().fit.objective;
+    double const best = selection.trials[a].front().standing;
     for (Trial const& rival : selection.trials[a]) {
       bool const active = std::ranges::find(selection.fit.active, rival.candidate) != selection.fit.active.end();
-      if (!active && rival.fit.objective < best + bench.thresholds.rival_gap)
+      if (!active && rival.standing < best + bench.thresholds.rival_gap)
         found.group.push_back(bench.candidates[rival.candidate].name);
     }
   }

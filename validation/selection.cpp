@@ -57,6 +57,19 @@ Fit on_the_line(Workbench const& bench, Fit wider) {
   return wider;
 }
 
+/// What a candidate reaches, with what its strength is beforehand: that of an instrument is known to be about its prior
+/// scale (normal), that of anything else to its order of magnitude at best (Cauchy).
+double standing(Workbench const& bench, Trial const& trial) {
+  Candidate const& candidate = bench.candidates[trial.candidate];
+  double const s = trial.fit.point.strengths[index(trial.candidate)] / candidate.prior_scale;
+  return trial.fit.objective + (candidate.kind == EffectClass::instrument ? s * s : 2 * std::log1p(s * s));
+}
+
+void sort_by_standing(Workbench const& bench, std::vector<Trial>& trials) {
+  for (Trial& trial : trials) trial.standing = standing(bench, trial);
+  std::ranges::stable_sort(trials, {}, &Trial::standing);
+}
+
 std::vector<Trial> trials_of(Workbench const& bench, Fit const& fit, Signatures const& signatures,
                              std::vector<std::size_t> const& tried) {
   std::vector<Trial> trials;
@@ -65,7 +78,7 @@ std::vector<Trial> trials_of(Workbench const& bench, Fit const& fit, Signatures 
     trials.push_back(
         {k, bench.thresholds.refits ? bench.refit().improved(std::move(wider)) : on_the_line(bench, std::move(wider))});
   }
-  std::ranges::stable_sort(trials, {}, [](Trial const& trial) { return trial.fit.objective; });
+  sort_by_standing(bench, trials);
   return trials;
 }
 
@@ -102,7 +115,7 @@ void try_rivals_again(Workbench const& bench, Selection& selection) {
       Fit wider = bench.refit().with(base, rival.candidate, selection.signatures.columns.col(index(rival.candidate)));
       trials.push_back({rival.candidate, bench.refit().improved(std::move(wider))});
     }
-    std::ranges::stable_sort(trials, {}, [](Trial const& trial) { return trial.fit.objective; });
+    sort_by_standing(bench, trials);
     selection.trials[a] = trials;
     if (trials.front().candidate == chosen) continue;
     selection.fit = trials.front().fit;  // its strength stands last: so do its trials
@@ -180,6 +193,7 @@ Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures s
         !adequacy_of(bench, trials.front().fit).ok)
       break;
     if (bench.thresholds.refits) trials.front().fit = bench.refit().settled(std::move(trials.front().fit));
+    trials.front().standing = standing(bench, trials.front());
     selection.fit = trials.front().fit;
     selection.trials.push_back(std::move(trials));
     drop_superfluous(bench, selection, dropped);

@@ -30,6 +30,7 @@ struct CandidateScores {
 struct Trial {
   std::size_t candidate = 0;
   Fit fit;
+  double standing = 0;  ///< -2 ln of likelihood times prior: the least is the best
 };
 
 struct Selection {
