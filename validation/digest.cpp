@@ -9,13 +9,14 @@
 
 namespace layerloop::validation {
 
-std::string sha256_of_file(std::filesystem::path const& path) {
-  std::string const bytes = read_file(path);
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest;
-  crypto_hash_sha256(digest.data(), reinterpret_cast<unsigned char const*>(bytes.data()), bytes.size());
-  std::string text;
-  for (unsigned char const byte : digest) text += fmt::format("{:02x}", byte);
-  return text;
+std::string sha256(std::string_view text) {
+  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
+  crypto_hash_sha256(digest.data(), reinterpret_cast<unsigned char const*>(text.data()), text.size());
+  std::string digits;
+  for (unsigned char const byte : digest) digits += fmt::format("{:02x}", byte);
+  return digits;
 }
+
+std::string sha256_of_file(std::filesystem::path const& path) { return sha256(read_file(path)); }
 
 }  // namespace layerloop::validation

@@ -14,6 +14,7 @@
 #include "validation/blind/analytic_design.hpp"
 #include "validation/blind/seal.hpp"
 #include "validation/blind/study_writer.hpp"
+#include "validation/digest.hpp"
 #include "validation/study_file.hpp"
 
 namespace layerloop::validation {

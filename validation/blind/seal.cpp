@@ -26,14 +26,6 @@ Bytes derived(std::uint64_t seed, std::string const& set, std::string const& id,
 
 }  // namespace
 
-std::string sha256(std::string_view text) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> hash{};
-  crypto_hash_sha256(hash.data(), bytes_of(text), text.size());
-  std::string digits;
-  for (unsigned char const byte : hash) digits += fmt::format("{:02x}", byte);
-  return digits;
-}
-
 std::uint64_t secret_of(std::uint64_t seed, std::string const& set, std::string const& id) {
   Bytes const bytes = derived(seed, set, id, "scenario");
   std::uint64_t secret = 0;

@@ -5,9 +5,6 @@
 
 namespace layerloop::validation {
 
-/// sha256 of a text, as 64 hexadecimal digits.
-std::string sha256(std::string_view text);
-
 /// Random number seed of one scenario: nobody can tell it from the id without the secret.
 std::uint64_t secret_of(std::uint64_t seed, std::string const& set, std::string const& id);
 
