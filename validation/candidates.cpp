@@ -144,11 +144,31 @@ ReadingEffect const* reading_effect(std::string const& name) {
   return of_library ? dynamic_cast<ReadingEffect const*>(&user_effect(name)) : nullptr;
 }
 
+/// Whether the case has the effect on and what it acts with.
+bool is_in(Effect const& effect, Case const& base) {
+  std::string const& name = effect.name;
+  if (name == "blade_compliance" && base.machine.recoater == RecoaterKind::compliant_blade) return true;
+  if (base.effect_strength(name) == 0) return false;
+  if (name == "cohesion" || name == "wall_cohesion") return base.contact.cohesion != Cohesion::none;
+  if (name == "rolling_resistance") return base.contact.rolling_friction > 0;
+  if (name == "wall_friction") return base.contact.wall_friction != base.contact.sliding_friction;
+  if (name == "surface_oxide") return base.optics.oxide_thickness > 0;
+  if (name == "diffuse_scattering") return base.optics.diffuse_share > 0;
+  if (name == "optical_temperature") return base.optics.temperature != 300;
+  return true;
+}
+
+bool has_all_of_it(Effect const& effect, Case const& base) {
+  double const strength = base.effect_strength(effect.name);
+  if (effect.name == "diffuse_scattering") return base.optics.diffuse_share * strength >= 1;
+  return is_in(effect, base) && strength >= effect.largest_strength;
+}
+
 /// Empty: it can be tested.
 std::string why_not(Effect const& effect, Reach const& reach, Case const& base) {
   if (reading_effect(effect.name)) return {};
   if (!sees(reach, effect.stage)) return not_seen(effect.stage);
-  if (base.effect_strength(effect.name) >= effect.largest_strength) return "the case has all of it already";
+  if (has_all_of_it(effect, base)) return "the case has all of it already";
   switch (effect.stage) {
     case EffectStage::dem:
       return why_not_grains(effect, reach, base);
@@ -162,20 +182,6 @@ std::string why_not(Effect const& effect, Reach const& reach, Case const& base) 
                  : "";
   }
   return {};
-}
-
-/// Whether the case has the effect on and what it acts with.
-bool is_in(Effect const& effect, Case const& base) {
-  std::string const& name = effect.name;
-  if (name == "blade_compliance" && base.machine.recoater == RecoaterKind::compliant_blade) return true;
-  if (base.effect_strength(name) == 0) return false;
-  if (name == "cohesion" || name == "wall_cohesion") return base.contact.cohesion != Cohesion::none;
-  if (name == "rolling_resistance") return base.contact.rolling_friction > 0;
-  if (name == "wall_friction") return base.contact.wall_friction != base.contact.sliding_friction;
-  if (name == "surface_oxide") return base.optics.oxide_thickness > 0;
-  if (name == "diffuse_scattering") return base.optics.diffuse_share > 0;
-  if (name == "optical_temperature") return base.optics.temperature != 300;
-  return true;
 }
 
 Candidate candidate_of(Effect const& effect, Case const& base) {

@@ -110,6 +110,8 @@ TEST(Candidates, AreThoseThatTheQuantitiesSee) {
   EXPECT_FALSE(beds.contains("keyhole") || beds.contains("surface_oxide"));
   EXPECT_TRUE(piles.contains("rolling_resistance"));
   EXPECT_FALSE(piles.contains("blade_vibration"));
+  EXPECT_TRUE(names(4).contains("diffuse_scattering")) << "on by default, of a share of 0";
+  EXPECT_FALSE(names(0).contains("variable_conductivity")) << "all of it is there";
   EXPECT_TRUE(names(5).contains("denudation") && names(5).contains("heat_accumulation"));
 }
 
