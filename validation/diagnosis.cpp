@@ -85,7 +85,7 @@ std::vector<CandidateFinding> findings(Workbench const& bench, Signatures const&
     double const reach = scores.reach[index(k)];
     if (found.not_testable.empty() && reach == 0) found.not_testable = "calibration can do all that it does";
     if (reach > 0) {
-      found.z = scores.z[index(k)];
+      found.z = scores.direction[index(k)] * scores.z[index(k)];
       found.kept_fraction = scores.kept[index(k)];
       found.evidence = log_evidence(found.z, reach, candidate.two_sided);
       found.detectable = (scores.critical + 1.28) / reach * candidate.prior_scale;

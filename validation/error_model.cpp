@@ -30,10 +30,13 @@ Eigen::MatrixXd covariance(Study const& study, Prediction const& prediction) {
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(n, n);
   std::map<std::size_t, std::vector<Eigen::Index>> sharing;  // by observable
   std::map<std::string, Eigen::VectorXd> systematic;         // by sys_group
+  std::map<std::string, std::vector<Eigen::Index>> of_quantity;
+  Eigen::VectorXd const mesh = at_observations(study, prediction.u_numerical);
   for (Eigen::Index i = 0; i < n; ++i) {
     Observation const& seen = study.observations[static_cast<std::size_t>(i)];
     c(i, i) += seen.u_stat * seen.u_stat;
     sharing[seen.observable].push_back(i);
+    of_quantity[seen.quantity].push_back(i);
     double const model = prediction.value[index(seen.observable)];
     double const shift = std::hypot(seen.u_sys_rel * model, seen.u_sys_abs);
     if (shift == 0) continue;
@@ -45,10 +48,13 @@ Eigen::MatrixXd covariance(Study const& study, Prediction const& prediction) {
     group->second[i] = shift;
   }
   for (auto const& [observable, rows] : sharing) {
-    double const variance =
-        std::pow(prediction.u_sampling[index(observable)], 2) + std::pow(prediction.u_numerical[index(observable)], 2);
+    double const variance = std::pow(prediction.u_sampling[index(observable)], 2);
     for (Eigen::Index const a : rows)
       for (Eigen::Index const b : rows) c(a, b) += variance;
+  }
+  for (auto const& [quantity, rows] : of_quantity) {
+    for (Eigen::Index const a : rows)
+      for (Eigen::Index const b : rows) c(a, b) += mesh[a] * mesh[b];
   }
   for (auto const& [name, shift] : systematic) c += shift * shift.transpose();
   return c;

@@ -12,7 +12,8 @@ Eigen::VectorXd measured_values(Study const& study);
 
 /// Covariance of measured minus predicted [SI]: readings independent, a sys_group fully correlated (its relative part
 /// on the model's value, so that multiplicative errors do not drag a fit low: d'Agostini, Nucl. Instrum. Methods A 346
-/// (1994) 306), replicates sharing the sampling and mesh error of their prediction.
+/// (1994) 306), replicates sharing the sampling error of their prediction, all readings of a quantity its mesh error,
+/// which has one sign.
 Eigen::MatrixXd covariance(Study const& study, Prediction const& prediction);
 
 /// Brings differences to unit, independent variance: L^-1 d with C = L L^T.

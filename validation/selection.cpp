@@ -154,6 +154,7 @@ CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatu
   Eigen::MatrixXd unit = project(signatures.columns);
   Eigen::Index const n = unit.cols();
   CandidateScores found{.z = Eigen::VectorXd::Zero(n),
+                        .direction = Eigen::VectorXd::Ones(n),
                         .reach = Eigen::VectorXd::Zero(n),
                         .kept = Eigen::VectorXd::Zero(n),
                         .cosines = Eigen::MatrixXd::Zero(n, n)};
@@ -168,7 +169,8 @@ CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatu
     if (!stands) continue;
     found.reach[k] = norm / sigma;
     double const z = unit.col(k).dot(left) / sigma;
-    found.z[k] = two_sided[static_cast<std::size_t>(k)] ? std::abs(z) : z;
+    if (two_sided[static_cast<std::size_t>(k)] && z < 0) found.direction[k] = -1;
+    found.z[k] = found.direction[k] * z;
   }
   found.cosines = unit.transpose() * unit;
   found.critical = LargestNull(unit, two_sided, bench.seed + 1).critical(bench.thresholds.family_error);

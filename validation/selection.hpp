@@ -19,9 +19,10 @@ struct Adequacy {
 
 /// How every candidate's signature lies in what calibration and the active candidates leave of the residual.
 struct CandidateScores {
-  Eigen::VectorXd z;      ///< by candidate; 0 where not testable or active
-  Eigen::VectorXd reach;  ///< norm of the projected signature over sigma: z for one prior scale
-  Eigen::VectorXd kept;   ///< share of the squared signature that is left
+  Eigen::VectorXd z;          ///< by candidate; 0 where not testable or active
+  Eigen::VectorXd direction;  ///< sign of the strength: -1 only where it is two-sided
+  Eigen::VectorXd reach;      ///< norm of the projected signature over sigma: z for one prior scale
+  Eigen::VectorXd kept;       ///< share of the squared signature that is left
   Eigen::MatrixXd cosines;
   double critical = 0;  ///< that a false candidate passes with Thresholds::family_error
 };

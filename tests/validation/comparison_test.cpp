@@ -88,11 +88,14 @@ TEST(Comparison, SharesTheErrorOfAnInput) {
   std::erase_if(study.observations, [](Observation const& o) { return o.quantity != "pool.width"; });
   study.calibration.push_back({.name = "error of laser.power", .key = "laser.power", .sd = 0.1, .relative = true});
   Comparison const compared = compare(study, with_share(0.6), 1);
-  double rr = 0, vr = 0, vv = 0;
+  // D = 4 um2 for each, and the mesh error of 1 um that all of them share: once more by Sherman and Morrison.
+  double rr = 0, vr = 0, vv = 0, r1 = 0, v1 = 0;
   for (double const power : {50, 100, 150, 200, 250, 300}) {
-    double const r = -0.1 * power, v = 0.06 * power, d = 4 + 1 + 0;  // um; u_num enters the covariance too
-    rr += r * r / d, vr += v * r / d, vv += v * v / d;
+    double const r = -0.1 * power, v = 0.06 * power;  // um
+    rr += r * r / 4, vr += v * r / 4, vv += v * v / 4, r1 += r / 4, v1 += v / 4;
   }
+  double const shared = 1 + 6.0 / 4;
+  rr -= r1 * r1 / shared, vr -= v1 * r1 / shared, vv -= v1 * v1 / shared;
   EXPECT_NEAR(compared.chi2, rr - vr * vr / (1 + vv), 1e-8 * rr);
 }
 
