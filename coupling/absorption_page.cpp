@@ -19,11 +19,6 @@
 namespace layerloop::coupling {
 namespace {
 
-std::string card(std::string_view label, std::string const& value, std::string const& note) {
-  return fmt::format("<div class=\"card\"><h3>{}</h3><p class=\"value\">{}</p><p class=\"note\">{}</p></div>\n", label,
-                     value, note);
-}
-
 std::string spread_words(AbsorptionFigure const& figure) {
   if (figure.n < 2) return "one bed: its spread from bed to bed is not known";
   return fmt::format("95 % interval &plusmn; {} over {} beds; from bed to bed {} (1&sigma;)",

@@ -17,11 +17,6 @@
 namespace layerloop::coupling {
 namespace {
 
-std::string card(std::string_view label, std::string const& value, std::string const& note) {
-  return fmt::format("<div class=\"card\"><h3>{}</h3><p class=\"value\">{}</p><p class=\"note\">{}</p></div>\n", label,
-                     value, note);
-}
-
 std::string micrometres(double value, double uncertainty) {
   return with_uncertainty(1e6 * value, 1e6 * uncertainty) + " &micro;m";
 }

@@ -17,6 +17,7 @@ namespace layerloop::validation {
 namespace {
 
 namespace fs = std::filesystem;
+using coupling::card;
 using coupling::escape;
 using coupling::figure;
 using coupling::significant;
@@ -28,11 +29,6 @@ std::string names_of(std::vector<AddedEffect> const& effects) {
   std::string names;
   for (AddedEffect const& effect : effects) names += (names.empty() ? "" : " and ") + effect.name;
   return names;
-}
-
-std::string card(std::string_view label, std::string const& value, std::string const& note) {
-  return fmt::format("<div class=\"card\"><h3>{}</h3><p class=\"value\">{}</p><p class=\"note\">{}</p></div>\n", label,
-                     value, note);
 }
 
 std::string effect_cards(BeforeAfter const& both) {

@@ -11,8 +11,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 ModelPoint point_of(Study const& study, std::size_t candidates, std::map<std::string, double> const& calibration,
                     std::uint64_t seeds) {
   ModelPoint point{.calibration = Eigen::VectorXd(index(study.calibration.size())),

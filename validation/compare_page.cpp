@@ -15,14 +15,10 @@
 namespace layerloop::validation {
 namespace {
 
+using coupling::card;
 using coupling::escape;
 using coupling::significant;
 using coupling::with_uncertainty;
-
-std::string card(std::string_view label, std::string const& value, std::string const& note) {
-  return fmt::format("<div class=\"card\"><h3>{}</h3><p class=\"value\">{}</p><p class=\"note\">{}</p></div>\n", label,
-                     value, note);
-}
 
 /// The null is drawn some ten thousand times.
 std::string chance(double p) { return p < 1e-4 ? "&lt; 0.0001" : significant(p, 2); }

@@ -15,8 +15,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 /// The observations that the model has an answer for.
 Study answered(Study study, Prediction const& prediction) {
   std::erase_if(study.observations,

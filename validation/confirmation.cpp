@@ -12,8 +12,6 @@ constexpr std::size_t fewest_conditions = 3, resamples = 4000;
 constexpr double least_gain = 4;          // of chi2 on the training data: two standard deviations
 constexpr double prior_weight = 1.0 / 9;  // as in the refit
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 /// Covariance of the free numbers of a fit, in prior scales.
 Eigen::MatrixXd uncertainty_of(Fit const& fit, double sigma2) {
   Eigen::MatrixXd normal = fit.jacobian.transpose() * fit.jacobian / sigma2;

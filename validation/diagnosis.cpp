@@ -18,8 +18,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 ModelPoint prior_point(Study const& study, std::size_t candidates) {
   ModelPoint point{.calibration = Eigen::VectorXd(index(study.calibration.size())),
                    .strengths = Eigen::VectorXd::Zero(index(candidates))};

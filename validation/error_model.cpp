@@ -6,12 +6,6 @@
 #include "core/error.hpp"
 
 namespace layerloop::validation {
-namespace {
-
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
-}  // namespace
-
 Eigen::VectorXd at_observations(Study const& study, Eigen::VectorXd const& by_observable) {
   Eigen::VectorXd all(index(study.observations.size()));
   for (Eigen::Index i = 0; i < all.size(); ++i)

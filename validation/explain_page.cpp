@@ -14,14 +14,10 @@
 namespace layerloop::validation {
 namespace {
 
+using coupling::card;
 using coupling::escape;
 using coupling::significant;
 using coupling::with_uncertainty;
-
-std::string card(std::string_view label, std::string const& value, std::string const& note) {
-  return fmt::format("<div class=\"card\"><h3>{}</h3><p class=\"value\">{}</p><p class=\"note\">{}</p></div>\n", label,
-                     value, note);
-}
 
 std::string verdict_words(Verdict verdict) {
   std::string words = name_of(verdict);

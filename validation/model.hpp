@@ -6,6 +6,9 @@
 
 namespace layerloop::validation {
 
+/// Eigen counts with signed numbers, the standard library without.
+inline Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
 /// Where a model is evaluated.
 struct ModelPoint {
   Eigen::VectorXd calibration;  ///< values, by Study::calibration [SI]

@@ -19,8 +19,6 @@ constexpr int most_replicates = 20;
 constexpr std::size_t varied_keys = 3, simulated_proposals = 3, fewest_for_surrogate = 6;
 constexpr double common_uncertainty = 0.05;  // relative, of a quantity that the study has no reading of
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 std::vector<std::string> varied_inputs(Study const& study) {
   std::map<std::string, std::set<double>> levels;
   for (Condition const& c : study.conditions)

@@ -11,8 +11,6 @@ namespace {
 constexpr std::size_t most_rivals = 3;
 constexpr double step = 0.25;  // of a derivative [prior scales], as in the refit: those runs are known
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 CandidateFinding const* grouped(Diagnosis const& found) {
   for (CandidateFinding const& effect : found.effects)
     if (effect.active && !effect.group.empty()) return &effect;

@@ -14,8 +14,6 @@ constexpr double least_contender = 2.0;  // z from the signature: a refit may ra
 constexpr double far_behind = 0.5;       // of the highest z: below, no refit brings a candidate to the front
 constexpr std::size_t most_twins = 3;    // that are refitted beside the contenders
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 bool is_active(Fit const& fit, std::size_t candidate) {
   return std::ranges::find(fit.active, candidate) != fit.active.end();
 }

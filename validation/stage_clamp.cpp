@@ -15,8 +15,6 @@ namespace {
 
 constexpr char const* key = "laser.absorptivity";
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 struct Mean {
   double sum = 0, u = 0;
   int n = 0;

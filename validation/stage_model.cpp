@@ -16,8 +16,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 /// One verb under one condition.
 struct Job {
   std::size_t condition = 0;

@@ -93,6 +93,11 @@ std::string with_uncertainty(double value, double uncertainty) {
                      decimals);
 }
 
+std::string card(std::string_view label_html, std::string_view value_html, std::string_view note_html) {
+  return fmt::format("<div class=\"card\"><h3>{}</h3><p class=\"value\">{}</p><p class=\"note\">{}</p></div>\n",
+                     label_html, value_html, note_html);
+}
+
 std::string figure(std::string_view content, std::string_view caption_html, std::string_view csv_name) {
   std::string const link = csv_name.empty() ? "" : fmt::format(" <a class=\"numbers\" href=\"{0}\">{0}</a>", csv_name);
   return fmt::format("<figure>{}<figcaption>{}{}</figcaption></figure>\n", content, caption_html, link);

@@ -32,6 +32,9 @@ std::string count(std::int64_t number);
 /// "0.612 &plusmn; 0.004": as many digits as the uncertainty carries. Without one, three significant digits.
 std::string with_uncertainty(double value, double uncertainty);
 
+/// One of the figures to look at first, with its name and a word on it, all HTML; they stand in a <div class="cards">.
+std::string card(std::string_view label_html, std::string_view value_html, std::string_view note_html);
+
 /// A plot or picture with its words, and the file that holds its numbers.
 std::string figure(std::string_view content, std::string_view caption_html, std::string_view csv_name = {});
 

@@ -9,8 +9,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 using enum EffectStage;
 using enum EffectClass;
 

@@ -11,8 +11,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 /// Whitened residual of the calibrated model, and what every candidate changes at its prior scale.
 struct Regression {
   Eigen::VectorXd residual;

@@ -9,8 +9,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 double rms(Eigen::VectorXd const& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }

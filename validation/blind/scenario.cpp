@@ -15,8 +15,6 @@
 namespace layerloop::validation {
 namespace {
 
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 enum class Visible { faintly_too, clearly };
 
 /// Draws one scenario step by step.

@@ -4,12 +4,6 @@
 #include <boost/math/tools/minima.hpp>
 
 namespace layerloop::validation {
-namespace {
-
-auto index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
-}  // namespace
-
 Separation::Separation(Study const& study, Model& model, std::vector<Candidate> const& candidates,
                        Eigen::VectorXd const& calibration)
     : study_(study), model_(model), candidates_(candidates) {
