@@ -63,12 +63,6 @@ Case ConditionCases::make(std::vector<std::string> const& settings, Verb verb) c
   return case_of_text(text_, study_.case_file, settings, process_of(verb));
 }
 
-Eigen::VectorXd prior_means(Study const& study) {
-  Eigen::VectorXd means(static_cast<Eigen::Index>(study.calibration.size()));
-  for (Eigen::Index p = 0; p < means.size(); ++p) means[p] = study.calibration[static_cast<std::size_t>(p)].mean;
-  return means;
-}
-
 std::vector<std::string> mesh_settings(Case const& base, std::vector<Case> const& others) {
   if (base.has_machine()) return {};
   std::vector<std::string> settings;

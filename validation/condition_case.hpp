@@ -29,9 +29,6 @@ class ConditionCases {
   bool scans_;
 };
 
-/// The values that were believed beforehand.
-Eigen::VectorXd prior_means(Study const& study);
-
 /// `key=value` with every digit of the value [SI].
 std::string setting(std::string const& key, double value);
 

@@ -18,16 +18,13 @@
 namespace layerloop::validation {
 namespace {
 
-ModelPoint prior_point(Study const& study, std::size_t candidates) {
-  ModelPoint point{.calibration = Eigen::VectorXd(index(study.calibration.size())),
-                   .strengths = Eigen::VectorXd::Zero(index(candidates))};
-  for (std::size_t k = 0; k < study.calibration.size(); ++k) point.calibration[index(k)] = study.calibration[k].mean;
-  return point;
+bool is_answered(Observation const& seen, Prediction const& prediction) {
+  return std::isfinite(prediction.value[index(seen.observable)]);
 }
 
 /// The study without the observations that the model has no answer for, and what was left out in words.
 Study answered(Study study, Prediction const& prediction) {
-  auto const silent = [&](Observation const& seen) { return !std::isfinite(prediction.value[index(seen.observable)]); };
+  auto const silent = [&](Observation const& seen) { return !is_answered(seen, prediction); };
   auto const count = std::ranges::count_if(study.observations, silent);
   if (count == 0) return study;
   study.limits.push_back(
@@ -96,6 +93,8 @@ std::vector<CandidateFinding> findings(Workbench const& bench, Signatures const&
     all.push_back(std::move(found));
   }
   Eigen::VectorXd const u = bench.refit().uncertainty(selection.fit);
+  constexpr double sure = 1.645;  // in 19 of 20 cases
+  double const gap = std::hypot(bench.thresholds.rival_gap, sure * bench.luck(selection.fit));
   for (std::size_t a = 0; a < selection.fit.active.size(); ++a) {
     for (Trial const& trial : selection.trials[a]) all[trial.candidate].chi2_after = trial.fit.objective;
     std::size_t const chosen = selection.fit.active[a];
@@ -107,8 +106,7 @@ std::vector<CandidateFinding> findings(Workbench const& bench, Signatures const&
     double const best = selection.trials[a].front().standing;
     for (Trial const& rival : selection.trials[a]) {
       bool const active = std::ranges::find(selection.fit.active, rival.candidate) != selection.fit.active.end();
-      if (!active && rival.standing < best + bench.thresholds.rival_gap)
-        found.group.push_back(bench.candidates[rival.candidate].name);
+      if (!active && rival.standing < best + gap) found.group.push_back(bench.candidates[rival.candidate].name);
     }
   }
   std::ranges::stable_sort(all, [](auto const& a, auto const& b) {
@@ -147,13 +145,15 @@ ObservationTable table_of(Workbench const& bench, Fit const& base, Fit const& ca
 Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> const& candidates,
                    Thresholds const& thresholds, std::uint64_t seed) {
   double const passes_before = model.passes();
-  ModelPoint const prior = prior_point(given, candidates.size());
-  Study const study = answered(given, model.predict(prior));
+  ModelPoint const prior{.calibration = prior_means(given),
+                         .strengths = Eigen::VectorXd::Zero(index(candidates.size()))};
+  Prediction const believed = model.predict(prior);
+  Study const study = answered(given, believed);
 
   // Calibrate; relative uncertainties rest on the calibrated model.
-  ResidualFrame first_frame(study, model.predict(prior));
+  ResidualFrame const first_frame(study, believed);
   Refit const first(model, candidates, first_frame, 1.0);
-  Fit base = first.at(prior, {});
+  Fit base = first.from(prior, believed);
   if (!thresholds.projects) base.jacobian.setZero();
   Fit const rough = first.improved(base);
   ResidualFrame frame(study, rough.prediction);
@@ -173,7 +173,7 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   calibrated.objective = calibrated.residual.squaredNorm() / noise.sigma2;
   Adequacy const before = adequacy_of(bench, calibrated);
   CandidateScores const scores = score_candidates(bench, calibrated, signatures);
-  Selection const selection = select_candidates(bench, calibrated, signatures);
+  Selection const selection = select_candidates(bench, calibrated, signatures, scores, before);
 
   Diagnosis diagnosis;
   diagnosis.effects = findings(bench, signatures, scores, selection);
@@ -182,6 +182,7 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   diagnosis.patterns_after = selection.adequacy.patterns;
   diagnosis.outliers = noise.outliers;
   diagnosis.limits = study.limits;
+  if (!selection.fit.converged) diagnosis.limits.push_back("the last refit still moved when its passes were used up");
   diagnosis.chi2_base = base.residual.squaredNorm();
   diagnosis.chi2_before = before.chi2;
   diagnosis.chi2_after = selection.adequacy.chi2;
@@ -196,8 +197,7 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   diagnosis.final_point = selection.fit.point;
   diagnosis.table = table_of(bench, base, calibrated, selection.fit, signatures);
   for (std::size_t i = 0; i < given.observations.size(); ++i)
-    if (std::ranges::find(study.observations, given.observations[i].id, &Observation::id) != study.observations.end())
-      diagnosis.table.rows.push_back(i);
+    if (is_answered(given.observations[i], believed)) diagnosis.table.rows.push_back(i);
   if (!before.ok)
     diagnosis.smooth_explained =
         smooth_share(study, calibrated.residual, Projection(frame.size(), calibrated.jacobian), noise.sigma2);

@@ -39,7 +39,6 @@ struct Thresholds {
   double large_pull = 3;           ///< of a calibration number
   double whole = 0.9, part = 0.6;  ///< shares of the excess chi2: identified above the first, unknown below the second
   double twin_cosine = 0.95;       ///< of signatures, above which no statistics can tell two candidates apart
-  double signature_noise = 25;     ///< least square of a signature over its own noise
   int most_effects = 3;
   double least_share = 0.05;    ///< of the excess chi2 that a further effect must take: less is the form of the first
   int refitted_candidates = 4;  ///< candidates tried by a nonlinear refit at each step of the selection

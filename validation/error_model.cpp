@@ -19,6 +19,12 @@ Eigen::VectorXd measured_values(Study const& study) {
   return all;
 }
 
+Eigen::VectorXd prior_means(Study const& study) {
+  Eigen::VectorXd means(static_cast<Eigen::Index>(study.calibration.size()));
+  for (Eigen::Index p = 0; p < means.size(); ++p) means[p] = study.calibration[static_cast<std::size_t>(p)].mean;
+  return means;
+}
+
 Eigen::MatrixXd covariance(Study const& study, Prediction const& prediction) {
   Eigen::Index const n = index(study.observations.size());
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(n, n);

@@ -9,6 +9,8 @@ namespace layerloop::validation {
 /// Prediction of every observation, from that of the observables.
 Eigen::VectorXd at_observations(Study const& study, Eigen::VectorXd const& by_observable);
 Eigen::VectorXd measured_values(Study const& study);
+/// Of the calibration numbers: the values that were believed beforehand.
+Eigen::VectorXd prior_means(Study const& study);
 
 /// Covariance of measured minus predicted [SI]: readings independent, a sys_group fully correlated (its relative part
 /// on the model's value, so that multiplicative errors do not drag a fit low: d'Agostini, Nucl. Instrum. Methods A 346

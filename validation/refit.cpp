@@ -10,6 +10,7 @@ namespace {
 constexpr double prior_weight = 1.0 / 9;  // of calibration: thrice its prior scale
 constexpr double strength_weight = 1e-4;  // keeps a strength finite where the data do not see it
 constexpr double difference_step = 0.25;  // [prior scales]
+constexpr double farther_step = 2;        // where grains that fall otherwise would hide the first
 constexpr double farthest = 6;            // that calibration may go [prior scales]
 constexpr double enough = 0.05;           // gain of the objective that is not worth a pass
 constexpr int most_passes = 14;
@@ -39,6 +40,10 @@ Eigen::VectorXd Refit::distance(Fit const& fit) const {
 
 void Refit::evaluate(Fit& fit) const {
   fit.prediction = model_.predict(fit.point);
+  weigh(fit);
+}
+
+void Refit::weigh(Fit& fit) const {
   fit.residual = frame_.residual(fit.prediction);
   auto const free = static_cast<Eigen::Index>(frame_.study().calibration.size());
   fit.objective = fit.residual.allFinite()
@@ -79,9 +84,10 @@ Fit Refit::moved(Fit const& fit, Eigen::VectorXd const& step) const {
 Eigen::MatrixXd Refit::differences(Fit const& fit) const {
   auto const free = static_cast<Eigen::Index>(frame_.study().calibration.size() + fit.active.size());
   Eigen::MatrixXd all(frame_.size(), free);
+  double const size = frame_.sampling_variance(fit.prediction) < 1 ? difference_step : farther_step;
   for (Eigen::Index k = 0; k < free; ++k) {
-    Eigen::VectorXd step = Eigen::VectorXd::Unit(free, k) * difference_step;
-    if (within_bounds(fit, step)[k] < 0.5 * difference_step) step = -step;  // stands at its upper bound
+    Eigen::VectorXd step = Eigen::VectorXd::Unit(free, k) * size;
+    if (within_bounds(fit, step)[k] < 0.5 * size) step = -step;  // stands at its upper bound
     Fit beside = moved(fit, step);
     if (!beside.residual.allFinite()) beside = moved(fit, step = -step);
     Eigen::VectorXd const change = frame_.change(beside.prediction, fit.prediction) / step[k];
@@ -93,6 +99,13 @@ Eigen::MatrixXd Refit::differences(Fit const& fit) const {
 Fit Refit::at(ModelPoint point, std::vector<std::size_t> active) const {
   Fit fit{.point = std::move(point), .active = std::move(active), .prediction = {}, .residual = {}, .jacobian = {}};
   evaluate(fit);
+  fit.jacobian = differences(fit);
+  return fit;
+}
+
+Fit Refit::from(ModelPoint point, Prediction prediction) const {
+  Fit fit{.point = std::move(point), .active = {}, .prediction = std::move(prediction), .residual = {}, .jacobian = {}};
+  weigh(fit);
   fit.jacobian = differences(fit);
   return fit;
 }
@@ -128,6 +141,7 @@ Fit Refit::improved(Fit fit) const {
   }
   Eigen::VectorXd weight = Eigen::VectorXd::Constant(free, strength_weight);
   weight.head(calibration).setConstant(prior_weight);
+  double const noise = 2 * frame_.sampling_variance(fit.prediction);  // no news: grains that fell otherwise
   double damping = 1e-3;
   for (int pass = 0; pass < most_passes; ++pass) {
     Eigen::MatrixXd normal = fit.jacobian.transpose() * fit.jacobian / sigma2_;
@@ -144,10 +158,9 @@ Fit Refit::improved(Fit fit) const {
     }
     Fit next = moved(fit, step);
     if (next.residual.allFinite()) {
-      Eigen::VectorXd const seen = frame_.change(next.prediction, fit.prediction);
-      Eigen::MatrixXd const updated =
-          fit.jacobian + (seen - fit.jacobian * step) * step.transpose() / step.squaredNorm();
-      fit.jacobian = next.jacobian = updated;
+      Eigen::VectorXd const news = frame_.change(next.prediction, fit.prediction) - fit.jacobian * step;
+      if (news.squaredNorm() > noise) fit.jacobian += news * step.transpose() / step.squaredNorm();
+      next.jacobian = fit.jacobian;
     }
     if (next.objective < fit.objective) {
       damping = std::max(1e-4, damping / 10);

@@ -18,7 +18,7 @@ struct Fit {
   Eigen::VectorXd residual;  ///< whitened
   Eigen::MatrixXd jacobian;  ///< (observations, free numbers) whitened change of the prediction for one prior scale
   double objective = 0;      ///< |residual|^2 / sigma^2 + |distance from the prior means|^2 / 9 of calibration
-  bool converged = false;
+  bool converged = false;    ///< no step is left that would gain anything
 };
 
 /// Least squares on true runs of the model: Levenberg-Marquardt with Broyden's update of the Jacobian, so that an
@@ -32,6 +32,8 @@ class Refit {
 
   /// The model where it stands, with its Jacobian by differences.
   Fit at(ModelPoint point, std::vector<std::size_t> active) const;
+  /// The same without active candidates, where its prediction is known already.
+  Fit from(ModelPoint point, Prediction prediction) const;
   /// From a fit with a candidate more, whose change for one prior scale is known.
   Fit with(Fit const& fit, std::size_t candidate, Eigen::VectorXd const& change) const;
   /// The same without an active candidate, not refitted. \param active  index into Fit::active
@@ -48,6 +50,7 @@ class Refit {
   Eigen::VectorXd distance(Fit const& fit) const;  ///< of the free numbers from their prior means
   Fit moved(Fit const& fit, Eigen::VectorXd const& step) const;
   void evaluate(Fit& fit) const;
+  void weigh(Fit& fit) const;  ///< its prediction
   Eigen::VectorXd within_bounds(Fit const& fit, Eigen::VectorXd step) const;
   Eigen::MatrixXd differences(Fit const& fit) const;
 

@@ -16,6 +16,16 @@ Eigen::VectorXd ResidualFrame::change(Prediction const& to, Prediction const& fr
   return others_(whiten_(at_observations(*study_, to.value - from.value)));
 }
 
+double ResidualFrame::sampling_variance(Prediction const& prediction) const {
+  if (prediction.u_sampling.isZero(0)) return 0;
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(size(), prediction.u_sampling.size());  // replicates share theirs
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    Eigen::Index const o = index(study_->observations[static_cast<std::size_t>(i)].observable);
+    scatter(i, o) = prediction.u_sampling[o];
+  }
+  return 2 * others_(whiten_(scatter)).squaredNorm();
+}
+
 void ResidualFrame::spare(std::size_t observation) {
   spared_.push_back(observation);
   Eigen::MatrixXd units = Eigen::MatrixXd::Zero(size(), static_cast<Eigen::Index>(spared_.size()));

@@ -18,6 +18,8 @@ class ResidualFrame {
   Eigen::VectorXd residual(Prediction const& prediction) const;
   /// Of one prediction from another: what a change of the model does.
   Eigen::VectorXd change(Prediction const& to, Prediction const& from) const;
+  /// Trace of the covariance of such a change from grains and rays alone, where they are drawn anew.
+  double sampling_variance(Prediction const& prediction) const;
   Whitening const& whiten() const { return whiten_; }
 
   /// Gives an observation a value of its own: what is left is as without it.

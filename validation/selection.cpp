@@ -122,22 +122,34 @@ void try_rivals_again(Workbench const& bench, Selection& selection) {
   }
 }
 
-}  // namespace
-
-Projection Workbench::projection(Fit const& fit) const {
-  if (thresholds.projects) return {frame.size(), fit.jacobian};
-  return {frame.size(), fit.jacobian.rightCols(static_cast<Eigen::Index>(fit.active.size()))};
-}
-
-Adequacy adequacy_of(Workbench const& bench, Fit const& fit) {
-  Projection const project = bench.projection(fit);
-  Eigen::VectorXd const left = project(fit.residual);
+Adequacy chi2_of(Workbench const& bench, Projection const& project, Eigen::VectorXd const& left) {
   Adequacy found;
   found.chi2 = left.squaredNorm() / bench.sigma2;
   found.dof =
       static_cast<double>(bench.frame.size() - project.rank()) - static_cast<double>(bench.frame.spared().size());
   if (found.dof > 0)
     found.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.dof), found.chi2));
+  return found;
+}
+
+}  // namespace
+
+double Workbench::luck(Fit const& fit) const { return 2 * std::sqrt(frame.sampling_variance(fit.prediction) / sigma2); }
+
+Projection Workbench::projection(Fit const& fit) const {
+  if (thresholds.projects) return {frame.size(), fit.jacobian};
+  return {frame.size(), fit.jacobian.rightCols(static_cast<Eigen::Index>(fit.active.size()))};
+}
+
+Adequacy chi2_of(Workbench const& bench, Fit const& fit) {
+  Projection const project = bench.projection(fit);
+  return chi2_of(bench, project, project(fit.residual));
+}
+
+Adequacy adequacy_of(Workbench const& bench, Fit const& fit) {
+  Projection const project = bench.projection(fit);
+  Eigen::VectorXd const left = project(fit.residual);
+  Adequacy found = chi2_of(bench, project, left);
   PatternSearch const search(bench.patterns, project, bench.pattern_null);
   found.patterns = search.find(left, std::sqrt(bench.sigma2));
   found.pattern_critical = search.critical(bench.thresholds.family_error);
@@ -175,11 +187,13 @@ CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatu
   return found;
 }
 
-Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures signatures) {
-  Selection selection{
-      .fit = std::move(calibrated), .trials = {}, .signatures = std::move(signatures), .scores = {}, .adequacy = {}};
-  selection.adequacy = adequacy_of(bench, selection.fit);
-  selection.scores = score_candidates(bench, selection.fit, selection.signatures);
+Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures signatures, CandidateScores scores,
+                            Adequacy before) {
+  Selection selection{.fit = std::move(calibrated),
+                      .trials = {},
+                      .signatures = std::move(signatures),
+                      .scores = std::move(scores),
+                      .adequacy = std::move(before)};
   double const excess = selection.adequacy.chi2 - selection.adequacy.dof;
   std::vector<std::size_t> dropped;  // what the others made superfluous does not come back
   while (static_cast<int>(selection.fit.active.size()) < bench.thresholds.most_effects) {
@@ -188,7 +202,7 @@ Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures s
     if (tried.empty() || (!any && selection.adequacy.ok)) break;
     std::vector<Trial> trials = trials_of(bench, selection.fit, selection.signatures, tried);
     double const gain = selection.fit.objective - trials.front().fit.objective;
-    if (!(gain > std::pow(selection.scores.critical, 2))) break;
+    if (!(gain > std::hypot(std::pow(selection.scores.critical, 2), bench.luck(selection.fit)))) break;
     if (!selection.fit.active.empty() && gain < bench.thresholds.least_share * excess &&
         !adequacy_of(bench, trials.front().fit).ok)
       break;

@@ -54,15 +54,22 @@ struct Workbench {
   std::uint64_t seed = 0;
 
   Refit refit() const { return {model, candidates, frame, sigma2}; }
+  /// Standard deviation of what two refits differ by in -2 ln L because grains fall otherwise each time; 0: they do
+  /// not.
+  double luck(Fit const& fit) const;
   /// What claims are projected on: free of all that calibration and active candidates can do.
   Projection projection(Fit const& fit) const;
 };
 
 Adequacy adequacy_of(Workbench const& bench, Fit const& fit);
+/// The same without a look at patterns: chi2, dof and p alone.
+Adequacy chi2_of(Workbench const& bench, Fit const& fit);
 CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatures const& signatures);
 
 /// Forward selection by nonlinear refits: the best candidate joins if it passes the family-wise level, those that
 /// became superfluous leave, until nothing is left to explain; then every choice is tried against its rivals once more.
-Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures signatures);
+/// From the calibrated fit, with what was found out about it already.
+Selection select_candidates(Workbench const& bench, Fit calibrated, Signatures signatures, CandidateScores scores,
+                            Adequacy before);
 
 }  // namespace layerloop::validation

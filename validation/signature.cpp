@@ -16,25 +16,14 @@ struct Probe {
 Probe probed(Model& model, ResidualFrame const& frame, Fit const& fit, std::size_t candidate, double strength,
              double prior_scale) {
   ModelPoint beside = fit.point;
-  beside.strengths[static_cast<Eigen::Index>(candidate)] += strength;
+  beside.strengths[index(candidate)] += strength;
   Eigen::VectorXd const change = frame.change(model.predict(beside), fit.prediction);
   return {change * (prior_scale / strength), change.allFinite()};
 }
 
-/// Of grains whose ways part: independent of those without the candidate. Light and heat act on the same grains.
-double sampling_noise(ResidualFrame const& frame, Fit const& fit, Candidate const& candidate) {
-  if (candidate.stage != EffectStage::dem) return 0;
-  Eigen::VectorXd const u = at_observations(frame.study(), fit.prediction.u_sampling);
-  return 2 * frame.whiten()(Eigen::MatrixXd(u.asDiagonal())).squaredNorm();
-}
-
-}  // namespace
-
-namespace {
-
 void probe(Model& model, Candidate const& candidate, std::size_t k, ResidualFrame const& frame, Fit const& fit,
            Signatures& all) {
-  auto const column = static_cast<Eigen::Index>(k);
+  Eigen::Index const column = index(k);
   double const room = candidate.largest - fit.point.strengths[column];
   auto const at = [&](double scale) {
     return probed(model, frame, fit, k, std::min(scale * candidate.prior_scale, room), candidate.prior_scale);
@@ -51,7 +40,6 @@ void probe(Model& model, Candidate const& candidate, std::size_t k, ResidualFram
     all.not_testable[k] = "it changes nothing under these conditions";
   } else {
     all.columns.col(column) = found.column;
-    all.noise[k] = sampling_noise(frame, fit, candidate);
   }
 }
 
@@ -59,8 +47,7 @@ void probe(Model& model, Candidate const& candidate, std::size_t k, ResidualFram
 
 Signatures probe_candidates(Model& model, std::vector<Candidate> const& candidates, ResidualFrame const& frame,
                             Fit const& fit) {
-  Signatures all{.columns = Eigen::MatrixXd::Zero(frame.size(), static_cast<Eigen::Index>(candidates.size())),
-                 .noise = std::vector<double>(candidates.size()),
+  Signatures all{.columns = Eigen::MatrixXd::Zero(frame.size(), index(candidates.size())),
                  .not_testable = std::vector<std::string>(candidates.size())};
   for (std::size_t k = 0; k < candidates.size(); ++k) probe(model, candidates[k], k, frame, fit, all);
   return all;

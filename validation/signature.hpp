@@ -11,7 +11,6 @@ namespace layerloop::validation {
 /// with the same random numbers with and without, so that thresholds are caught and grains cancel.
 struct Signatures {
   Eigen::MatrixXd columns;                ///< (observations, candidates); zero where there is none
-  std::vector<double> noise;              ///< trace of a column's covariance from grains and rays, upper bound
   std::vector<std::string> not_testable;  ///< by candidate: why there is none; empty: tested
 };
 

@@ -11,6 +11,7 @@
 #include "coupling/scan_path.hpp"
 #include "validation/candidates.hpp"
 #include "validation/condition_case.hpp"
+#include "validation/error_model.hpp"
 #include "validation/stage_run.hpp"
 
 namespace layerloop::validation {

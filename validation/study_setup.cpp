@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "validation/condition_case.hpp"
+#include "validation/error_model.hpp"
 #include "validation/stage_run.hpp"
 
 namespace layerloop::validation {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -30,15 +29,15 @@ std::vector<Jump> jumps_in(Evidence const& evidence) {
   return jumps;
 }
 
-Adequacy adequacy_with(Evidence const& evidence, Fit fit, Eigen::MatrixXd const& columns) {
+Fit with_columns(Fit fit, Eigen::MatrixXd const& columns) {
   fit.jacobian = beside(fit.jacobian, columns);
-  return adequacy_of(evidence.bench, fit);
+  return fit;
 }
 
 /// What a jump reaches, counted against it the numbers that it fits and how many jumps of its kind were tried
-/// (Akaike; Schwarz). By `before`, that of the calibrated model.
+/// (Akaike; Schwarz).
 double jump_score(Evidence const& evidence, Jump const& jump, std::vector<Jump> const& all) {
-  Adequacy const with = adequacy_with(evidence, evidence.calibrated, jump.columns);
+  Adequacy const with = chi2_of(evidence.bench, with_columns(evidence.calibrated, jump.columns));
   auto const same_kind = std::ranges::count(all, jump.label, &Jump::label);
   return with.chi2 + 2 * (evidence.before.dof - with.dof) + 2 * std::log(static_cast<double>(same_kind));
 }
@@ -65,7 +64,8 @@ std::optional<Jump> sufficient_level(Evidence const& evidence) {
   std::optional<Jump> best;
   double least = std::numeric_limits<double>::infinity();
   for (Jump const& jump : all) {
-    if (jump.label == order_of_acquisition || !adequacy_with(evidence, evidence.calibrated, jump.columns).ok) continue;
+    if (jump.label == order_of_acquisition) continue;
+    if (!adequacy_of(evidence.bench, with_columns(evidence.calibrated, jump.columns)).ok) continue;
     if (double const score = jump_score(evidence, jump, all); score < least) best = jump, least = score;
   }
   return best;
@@ -83,7 +83,7 @@ std::string lonely_condition(Evidence const& evidence, Fit const& fit) {
     Eigen::MatrixXd units = Eigen::MatrixXd::Zero(evidence.bench.frame.size(), static_cast<Eigen::Index>(rows.size()));
     for (std::size_t k = 0; k < rows.size(); ++k) units(rows[k], static_cast<Eigen::Index>(k)) = 1;
     Eigen::MatrixXd const own = evidence.bench.frame.without_spared(evidence.bench.frame.whiten()(units));
-    if (adequacy_with(evidence, fit, own).ok) return study.conditions[c].id;
+    if (adequacy_of(evidence.bench, with_columns(fit, own)).ok) return study.conditions[c].id;
   }
   return "";
 }
@@ -108,7 +108,7 @@ std::vector<OutlierFinding> sufficient_outliers(Evidence const& evidence) {
     found.push_back({seen.id, z[worst]});
     kinds.insert({seen.quantity, z[worst] > 0});
     Eigen::MatrixXd const unit = Eigen::VectorXd::Unit(z.size(), worst);
-    fit.jacobian = beside(fit.jacobian, bench.frame.without_spared(bench.frame.whiten()(unit)));
+    fit = with_columns(std::move(fit), bench.frame.without_spared(bench.frame.whiten()(unit)));
     if (!adequacy_of(bench, fit).ok) continue;
     bool const lopsided = found.size() > 2 && kinds.size() == 1;
     bool const far = found.size() > 2 || std::abs(found.back().z) > alone_z;

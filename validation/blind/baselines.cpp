@@ -19,9 +19,7 @@ struct Regression {
 };
 
 ModelPoint calibrated(Study const& study, Model& model, std::size_t candidates) {
-  ModelPoint point{.calibration = Eigen::VectorXd(index(study.calibration.size())),
-                   .strengths = Eigen::VectorXd::Zero(index(candidates))};
-  for (std::size_t k = 0; k < study.calibration.size(); ++k) point.calibration[index(k)] = study.calibration[k].mean;
+  ModelPoint point{.calibration = prior_means(study), .strengths = Eigen::VectorXd::Zero(index(candidates))};
   auto const rows = index(study.observations.size()), numbers = point.calibration.size();
   for (int iteration = 0; iteration < 3; ++iteration) {  // Gauss and Newton
     Prediction const base = model.predict(point);
