@@ -103,10 +103,14 @@ std::vector<CandidateFinding> findings(Workbench const& bench, Signatures const&
     found.active = true;
     found.strength = selection.fit.point.strengths[index(chosen)];
     found.u_strength = u[column] * bench.candidates[chosen].prior_scale;
-    double const best = selection.trials[a].front().standing;
+    Trial const& best = selection.trials[a].front();
     for (Trial const& rival : selection.trials[a]) {
       bool const active = std::ranges::find(selection.fit.active, rival.candidate) != selection.fit.active.end();
-      if (!active && rival.standing < best + gap) found.group.push_back(bench.candidates[rival.candidate].name);
+      // Between twins a prior alone would decide.
+      bool const twins = scores.cosines(index(chosen), index(rival.candidate)) > bench.thresholds.twin_cosine;
+      bool const close =
+          rival.standing < best.standing + gap || (twins && rival.fit.objective < best.fit.objective + gap);
+      if (!active && close) found.group.push_back(bench.candidates[rival.candidate].name);
     }
   }
   std::ranges::stable_sort(all, [](auto const& a, auto const& b) {
@@ -188,7 +192,8 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   diagnosis.chi2_after = selection.adequacy.chi2;
   diagnosis.dof = selection.adequacy.dof;
   diagnosis.sigma2 = noise.sigma2;
-  diagnosis.explained = explained_share(before, selection.adequacy);
+  diagnosis.structure_after = structure_of(bench, selection.fit);
+  diagnosis.explained = explained_share(structure_of(bench, calibrated), diagnosis.structure_after);
   diagnosis.z_critical = scores.critical;
   diagnosis.pattern_critical = before.pattern_critical;
   for (Candidate const& candidate : candidates) diagnosis.candidate_names.push_back(candidate.name);

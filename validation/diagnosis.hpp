@@ -29,17 +29,19 @@ std::string const& name_of(Verdict verdict);
 
 /// Frozen on a development set; docs/find-the-missing-effect.md tells how. Nothing else in the diagnosis can be tuned.
 struct Thresholds {
-  double family_error = 0.005;     ///< of any false candidate, and of any false pattern
-  double adequate_p = 1e-3;        ///< of chi2 after
-  double rival_gap = 6;            ///< of -2 ln L, within which rivals are one group
-  double drop_z = 2.5;             ///< below it an active effect is dropped
-  double outlier_z = 3.9;          ///< under the permissive model
-  double outlier_share = 0.05;     ///< of the observations, at most
-  double noisy_scale = 1.35;       ///< of sigma^2, above which the noise is called understated
-  double large_pull = 3;           ///< of a calibration number
-  double whole = 0.9, part = 0.6;  ///< shares of the excess chi2: identified above the first, unknown below the second
-  double twin_cosine = 0.95;       ///< of signatures, above which no statistics can tell two candidates apart
-  int most_effects = 3;
+  double family_error = 0.005;  ///< of any false candidate, and of any false pattern
+  double adequate_p = 1e-3;     ///< of chi2 after
+  double rival_gap = 6;         ///< of -2 ln L, within which rivals are one group
+  double drop_z = 2.5;          ///< below it an active effect is dropped
+  double outlier_z = 3.9;       ///< under the permissive model
+  double outlier_share = 0.05;  ///< of the observations, at most
+  double noisy_scale = 1.35;    ///< of sigma^2, above which the noise is called understated
+  double large_pull = 3;        ///< of a calibration number
+  double whole = 0.9;           ///< share of the structure that a name must take if what it leaves is not noise
+  double structure_p = 0.01;    ///< of what one name leaves of the structure
+  double several_p = 0.16;      ///< the same of several names: each of them may stand for a share of something else
+  double twin_cosine = 0.95;    ///< of signatures, above which no statistics can tell two candidates apart
+  int most_effects = 3;         ///< tried; as many as that are no explanation
   double least_share = 0.05;    ///< of the excess chi2 that a further effect must take: less is the form of the first
   int refitted_candidates = 4;  ///< candidates tried by a nonlinear refit at each step of the selection
   /// Switched off in ablations only.
@@ -67,6 +69,12 @@ struct CandidateFinding {
 struct PatternFinding {
   std::string text;     ///< "pool.depth rises with laser.power"
   double z = 0, p = 1;  ///< p over the whole family
+};
+
+/// All smooth patterns together: faint structure that none of them shows by itself.
+struct Structure {
+  double excess = 0;  ///< sum of their squared scores less what noise leaves of it
+  double p = 1;       ///< that noise alone reaches it
 };
 
 struct ParameterFinding {
@@ -99,7 +107,8 @@ struct Diagnosis {
   std::vector<std::string> limits;                        ///< what these data cannot tell
   double chi2_base = 0, chi2_before = 0, chi2_after = 0;  ///< as the case stands; calibrated; with the active effects
   double dof = 0, sigma2 = 1;                             ///< sigma2: square of the factor on all uncertainties
-  double explained = 0;         ///< share of the excess chi2 that the active effects take away
+  double explained = 0;                                   ///< share of the structure that the active effects take away
+  Structure structure_after{};                            ///< what they leave of it
   double smooth_explained = 0;  ///< the same of any smooth correction, left out condition by condition
   double z_critical = 0, pattern_critical = 0;
   std::vector<std::string> candidate_names;

@@ -123,7 +123,8 @@ std::string provenance(Explanation const& explained) {
   row("family error", fmt::format("{}", t.family_error));
   row("z of a candidate, at least", fmt::format("{:.2f}", explained.found.z_critical));
   row("z of a pattern, at least", fmt::format("{:.2f}", explained.found.pattern_critical));
-  row("adequate p, rival gap, whole, part", fmt::format("{}, {}, {}, {}", t.adequate_p, t.rival_gap, t.whole, t.part));
+  row("adequate p, rival gap, whole, structure p, of several names",
+      fmt::format("{}, {}, {}, {}, {}", t.adequate_p, t.rival_gap, t.whole, t.structure_p, t.several_p));
   row("outlier z, noisy scale, large pull", fmt::format("{}, {}, {}", t.outlier_z, t.noisy_scale, t.large_pull));
   std::vector<std::string> tried;
   for (Candidate const& candidate : explained.candidates) tried.push_back(candidate.name);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/gamma.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -19,6 +20,7 @@ struct Variable {
   std::string words;  ///< "rises with laser.power"
   std::vector<double> values;
   bool is_level = false;  ///< 0 or 1: no products of it
+  bool is_order = false;
 };
 
 /// To mean 0 and largest 1, so that products are of shapes and not of sizes; 0 where there is no value (a bare plate
@@ -102,8 +104,8 @@ class Variables {
   /// A drift over the conditions in the order of acquisition, and jumps between them.
   void add_order() {
     auto const n = study_.conditions.size();
-    add_line("order of acquisition",
-             read([&](Observation const& seen) { return static_cast<double>(seen.condition); }));
+    add_line(order_of_acquisition, read([&](Observation const& seen) { return static_cast<double>(seen.condition); }));
+    if (!all.empty() && all.back().words == order_of_acquisition) all.back().is_order = true;
     constexpr std::size_t most_jumps = 12;
     std::size_t const stride = std::max<std::size_t>(1, n / most_jumps);
     for (std::size_t first = stride; first + 1 < n; first += stride) {
@@ -127,7 +129,7 @@ Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, 
   Patterns found;
   std::vector<Eigen::VectorXd> columns;
   auto const n = static_cast<Eigen::Index>(study.observations.size());
-  auto const add = [&](std::string const& quantity, std::string const& words, auto const& value) {
+  auto const add = [&](std::string const& quantity, std::string const& words, bool smooth, auto const& value) {
     Eigen::VectorXd column = Eigen::VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       auto const k = static_cast<std::size_t>(i);
@@ -137,15 +139,18 @@ Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, 
     if (column.norm() == 0) return;
     columns.push_back(std::move(column));
     found.texts.push_back(fmt::format("{}: {}", quantity, words));
+    found.smooth.push_back(smooth && quantity != "everything");
   };
   for (std::string const& quantity : rows) {
-    add(quantity, "throughout", [](std::size_t) { return 1.0; });
+    add(quantity, "throughout", true, [](std::size_t) { return 1.0; });
     for (Variable const& v : variables)
-      add(quantity, v.is_level ? v.words : "over " + v.words, [&](std::size_t k) { return v.values[k]; });
+      add(quantity, v.is_level ? v.words : "over " + v.words, !v.is_level && !v.is_order,
+          [&](std::size_t k) { return v.values[k]; });
     for (std::size_t a = 0; a < variables.size(); ++a) {
       for (std::size_t b = a; b < variables.size(); ++b) {
         if (variables[a].is_level || variables[b].is_level) continue;
         add(quantity, fmt::format("over {} times {}", variables[a].words, variables[b].words),
+            !variables[a].is_order && !variables[b].is_order,
             [&](std::size_t k) { return variables[a].values[k] * variables[b].values[k]; });
       }
     }
@@ -210,6 +215,7 @@ PatternSearch::PatternSearch(Patterns const& patterns, Projection const& project
     if (norm < 1e-3 * before[k]) continue;  // calibration can do all of it
     unit_.col(kept) = unit_.col(k) / norm;
     texts_.push_back(patterns.texts[static_cast<std::size_t>(k)]);
+    if (patterns.smooth[static_cast<std::size_t>(k)]) smooth_.push_back(kept);
     ++kept;
   }
   unit_.conservativeResize(Eigen::NoChange, kept);
@@ -218,6 +224,15 @@ PatternSearch::PatternSearch(Patterns const& patterns, Projection const& project
 PatternSearch::PatternSearch(Patterns const& patterns, Projection const& projection, std::uint64_t seed)
     : PatternSearch(patterns, projection, LargestNull()) {
   null_ = LargestNull(unit_, std::vector<bool>(static_cast<std::size_t>(unit_.cols()), true), seed);
+}
+
+Structure PatternSearch::structure(Eigen::VectorXd const& residual, double scale) const {
+  if (smooth_.empty()) return {};
+  Eigen::MatrixXd const unit = unit_(Eigen::all, smooth_);
+  double const mean = static_cast<double>(smooth_.size()), variance = 2 * (unit.transpose() * unit).squaredNorm();
+  double const total = (unit.transpose() * residual).squaredNorm() / (scale * scale);
+  boost::math::gamma_distribution<> const noise(mean * mean / variance, variance / mean);
+  return {total - mean, boost::math::cdf(boost::math::complement(noise, total))};
 }
 
 std::vector<PatternFinding> PatternSearch::find(Eigen::VectorXd const& residual, double scale, std::size_t most) const {

@@ -16,6 +16,7 @@ namespace layerloop::validation {
 /// acquisition (drift, jumps), each as a share of the predicted value.
 struct Patterns {
   std::vector<std::string> texts;  ///< "pool.depth: over laser.power"
+  std::vector<bool> smooth;        ///< of one quantity over inputs and places: what physics may look like
   Eigen::MatrixXd columns;         ///< (observations, patterns), whitened
 };
 Patterns generic_patterns(Study const& study, Eigen::VectorXd const& predicted, Whitening const& whiten);
@@ -39,12 +40,15 @@ class PatternSearch {
   /// Strongest first, with p over the whole family.
   /// \param residual  whitened and projected, measured minus predicted \param scale  sigma: residuals are divided by it
   std::vector<PatternFinding> find(Eigen::VectorXd const& residual, double scale, std::size_t most = 20) const;
+  /// The sum of squares is taken for a gamma variable (Satterthwaite, Biometrics Bull. 2 (1946) 110).
+  Structure structure(Eigen::VectorXd const& residual, double scale) const;
   double critical(double family_error) const { return null_.critical(family_error); }
   LargestNull const& null() const { return null_; }
 
  private:
   Eigen::MatrixXd unit_;
   std::vector<std::string> texts_;
+  std::vector<Eigen::Index> smooth_;  ///< columns
   LargestNull null_;
 };
 

@@ -11,13 +11,26 @@ constexpr double prior_weight = 1.0 / 9;  // of calibration: thrice its prior sc
 constexpr double strength_weight = 1e-4;  // keeps a strength finite where the data do not see it
 constexpr double difference_step = 0.25;  // [prior scales]
 constexpr double farther_step = 2;        // where grains that fall otherwise would hide the first
-constexpr double farthest = 6;            // that calibration may go [prior scales]
+constexpr double farthest = 4.5;          // that calibration may go [prior scales]
 constexpr double enough = 0.05;           // gain of the objective that is not worth a pass
 constexpr int most_passes = 14;
 
 auto ulong(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
+
+std::vector<Eigen::Index> movable_columns(Study const& study, Fit const& fit) {
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k) {
+    bool const is_calibration = ulong(k) < study.calibration.size();
+    if (is_calibration) {
+      CalibrationParameter const& number = study.calibration[ulong(k)];
+      if (std::abs(fit.point.calibration[k] - number.mean) > 0.99 * farthest * number.sd) continue;
+    }
+    columns.push_back(k);
+  }
+  return columns;
+}
 
 double Refit::scale(Fit const& fit, Eigen::Index k) const {
   auto const& calibration = frame_.study().calibration;

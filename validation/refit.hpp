@@ -21,6 +21,10 @@ struct Fit {
   bool converged = false;    ///< no step is left that would gain anything
 };
 
+/// Columns of a fit's Jacobian without calibration numbers that stand as far from what was believed as they may: these
+/// can explain nothing more.
+std::vector<Eigen::Index> movable_columns(Study const& study, Fit const& fit);
+
 /// Least squares on true runs of the model: Levenberg-Marquardt with Broyden's update of the Jacobian, so that an
 /// iteration costs one pass over the data (More, in: Numerical Analysis, LNM 630 (1978); Broyden, Math. Comp. 19 (1965)
 /// 577). Calibration is held by thrice its prior scale only: claims rest on what it cannot do at all, and a prior that

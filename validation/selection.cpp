@@ -137,7 +137,7 @@ Adequacy chi2_of(Workbench const& bench, Projection const& project, Eigen::Vecto
 double Workbench::luck(Fit const& fit) const { return 2 * std::sqrt(frame.sampling_variance(fit.prediction) / sigma2); }
 
 Projection Workbench::projection(Fit const& fit) const {
-  if (thresholds.projects) return {frame.size(), fit.jacobian};
+  if (thresholds.projects) return {frame.size(), fit.jacobian(Eigen::all, movable_columns(frame.study(), fit))};
   return {frame.size(), fit.jacobian.rightCols(static_cast<Eigen::Index>(fit.active.size()))};
 }
 
@@ -156,6 +156,12 @@ Adequacy adequacy_of(Workbench const& bench, Fit const& fit) {
   double const largest = found.patterns.empty() ? 0 : std::abs(found.patterns.front().z);
   found.ok = found.p > bench.thresholds.adequate_p && largest < found.pattern_critical;
   return found;
+}
+
+Structure structure_of(Workbench const& bench, Fit const& fit) {
+  Projection const project = bench.projection(fit);
+  return PatternSearch(bench.patterns, project, bench.pattern_null)
+      .structure(project(fit.residual), std::sqrt(bench.sigma2));
 }
 
 CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatures const& signatures) {

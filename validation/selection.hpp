@@ -64,6 +64,7 @@ struct Workbench {
 Adequacy adequacy_of(Workbench const& bench, Fit const& fit);
 /// The same without a look at patterns: chi2, dof and p alone.
 Adequacy chi2_of(Workbench const& bench, Fit const& fit);
+Structure structure_of(Workbench const& bench, Fit const& fit);
 CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatures const& signatures);
 
 /// Forward selection by nonlinear refits: the best candidate joins if it passes the family-wise level, those that

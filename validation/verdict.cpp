@@ -200,16 +200,26 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
     return std::ranges::any_of(diagnosis.effects,
                                [&](auto const& found) { return found.active && found.kind == kind; });
   };
-  bool const adequate = now.ok || !limit.gates;
+  std::size_t const count = evidence.selection.fit.active.size();
+  // Several names fit many a shape: they must leave clearly nothing of it, or take nearly all.
+  bool const shapeless = diagnosis.structure_after.p > (count > 1 ? limit.several_p : limit.structure_p);
+  bool const adequate = (now.ok && shapeless) || !limit.gates;
   bool const beaten = evidence.smooth_explained > diagnosis.explained + 0.1;
-  // As many effects as may be, and still not enough: they share out the shape of something else among them.
-  bool const patchwork = static_cast<int>(evidence.selection.fit.active.size()) >= limit.most_effects;
-  bool const weak = !adequate && (diagnosis.explained <= limit.part || beaten || patchwork);
+  // As many effects as may be share out the shape of something else among them.
+  bool const patchwork = limit.gates && static_cast<int>(count) >= limit.most_effects;
+  // An input that would have to be as wrong as it can be.
+  bool const far_off =
+      limit.gates && std::ranges::any_of(evidence.selection.fit.active, [&](std::size_t k) {
+        Candidate const& candidate = evidence.bench.candidates[k];
+        double const strength = evidence.selection.fit.point.strengths[index(k)];
+        return candidate.kind == EffectClass::calibration && std::abs(strength) > 0.99 * candidate.largest;
+      });
+  bool const weak = patchwork || far_off || (!adequate && (diagnosis.explained <= limit.whole || beaten));
   if (weak && say_outliers(evidence, diagnosis)) return;
   if (weak)
     return say(
         diagnosis, Verdict::UNKNOWN,
-        fmt::format("No known effect explains this: {} takes {:.0f} % of the excess, a smooth correction {:.0f} %. "
+        fmt::format("No known effect explains this: {} takes {:.0f} % of the structure, a smooth correction {:.0f} %. "
                     "What is left looks like: {}.",
                     names, 100 * diagnosis.explained, 100 * evidence.smooth_explained, top_patterns(now)));
   if (adequate && has_class(EffectClass::numerics))
@@ -224,19 +234,18 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
         fmt::format("{} would explain it, but an offset of {} does so as well: measure it within one {}.", names,
                     jump->words, jump->label == order_of_acquisition ? "session, in random order" : jump->label));
   std::vector<std::string> const all = members(diagnosis);
-  bool const whole = adequate || diagnosis.explained > limit.whole;
-  if (whole && all.size() > active_names(diagnosis).size())
+  if (all.size() > active_names(diagnosis).size())
     return say(diagnosis, Verdict::GROUP,
                fmt::format("One of {{{}}} is missing; these data cannot tell which.", fmt::join(all, ", ")));
   if (adequate && has_class(EffectClass::calibration))
     return say(diagnosis, Verdict::CALIBRATION, fmt::format("An input is off: {}. Measure it independently.", names));
   if (adequate) return say(diagnosis, Verdict::IDENTIFIED, fmt::format("{} is missing.", names));
-  if (whole && !has_class(EffectClass::instrument) && !has_class(EffectClass::calibration))
+  if (!has_class(EffectClass::instrument) && !has_class(EffectClass::calibration))
     return say(diagnosis, Verdict::IDENTIFIED_FORM_IMPERFECT,
                fmt::format("{} is missing; its form here is not quite that of the measurements ({}).", names,
                            top_patterns(now)));
   say(diagnosis, Verdict::PARTIAL,
-      fmt::format("This resembles {}, which takes {:.0f} % of the excess. What is left looks like: {}.", names,
+      fmt::format("This resembles {}, which takes {:.0f} % of the structure. What is left looks like: {}.", names,
                   100 * diagnosis.explained, top_patterns(now)));
 }
 
@@ -249,9 +258,8 @@ std::string const& name_of(Verdict verdict) {
   return names.at(static_cast<std::size_t>(verdict));
 }
 
-double explained_share(Adequacy const& before, Adequacy const& after) {
-  double const excess = before.chi2 - before.dof;
-  return excess > 0 ? std::clamp(1 - std::max(0.0, after.chi2 - after.dof) / excess, 0.0, 1.0) : 1.0;
+double explained_share(Structure const& before, Structure const& after) {
+  return before.excess > 0 ? std::clamp(1 - after.excess / before.excess, 0.0, 1.0) : 1.0;
 }
 
 void reach_verdict(Evidence const& evidence, Diagnosis& diagnosis) {

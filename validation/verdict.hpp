@@ -15,8 +15,8 @@ struct Evidence {
   double smooth_explained = 0;
 };
 
-/// Share of the excess chi2 that the active candidates take away.
-double explained_share(Adequacy const& before, Adequacy const& after);
+/// Share of the structure that the active candidates take away.
+double explained_share(Structure const& before, Structure const& after);
 
 /// Verdict, sentence and groups of a diagnosis whose figures stand already.
 void reach_verdict(Evidence const& evidence, Diagnosis& diagnosis);

@@ -141,9 +141,9 @@ std::string const& name_of(BlindSet set) {
 std::string text_of(Thresholds const& t) {
   return fmt::format(
       "family error {}, adequate p {}, rival gap {}, drop z {}, outlier z {}, outlier share {}, noisy scale {}, large "
-      "pull {}, whole {}, part {}, twin cosine {}, most effects {}, refitted candidates {}",
+      "pull {}, whole {}, structure p {}, several p {}, twin cosine {}, most effects {}, refitted candidates {}",
       t.family_error, t.adequate_p, t.rival_gap, t.drop_z, t.outlier_z, t.outlier_share, t.noisy_scale, t.large_pull,
-      t.whole, t.part, t.twin_cosine, t.most_effects, t.refitted_candidates);
+      t.whole, t.structure_p, t.several_p, t.twin_cosine, t.most_effects, t.refitted_candidates);
 }
 
 void make_blind_test(fs::path const& folder, std::size_t scenarios, std::uint64_t seed, BlindSet set) {
