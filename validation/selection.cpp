@@ -132,6 +132,15 @@ Adequacy chi2_of(Workbench const& bench, Projection const& project, Eigen::Vecto
   return found;
 }
 
+/// Of what is left of signatures where calibration can do all that it may anywhere: at its bound it is no less able to
+/// make two of them alike.
+Eigen::MatrixXd cosines(Workbench const& bench, Fit const& fit, Eigen::MatrixXd unit) {
+  if (bench.thresholds.projects) unit = Projection(bench.frame.size(), fit.jacobian)(unit);
+  for (Eigen::Index k = 0; k < unit.cols(); ++k)
+    if (double const norm = unit.col(k).norm(); norm > least_kept) unit.col(k) /= norm;
+  return unit.transpose() * unit;
+}
+
 }  // namespace
 
 double Workbench::luck(Fit const& fit) const { return 2 * std::sqrt(frame.sampling_variance(fit.prediction) / sigma2); }
@@ -188,7 +197,7 @@ CandidateScores score_candidates(Workbench const& bench, Fit const& fit, Signatu
     if (two_sided[static_cast<std::size_t>(k)] && z < 0) found.direction[k] = -1;
     found.z[k] = found.direction[k] * z;
   }
-  found.cosines = unit.transpose() * unit;
+  found.cosines = cosines(bench, fit, unit);
   found.critical = LargestNull(unit, two_sided, bench.seed + 1).critical(bench.thresholds.family_error);
   return found;
 }
