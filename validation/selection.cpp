@@ -50,8 +50,10 @@ Fit on_the_line(Workbench const& bench, Fit wider) {
   Eigen::VectorXd const step = normal.ldlt().solve(wider.jacobian.transpose() * wider.residual);
   wider.residual -= wider.jacobian * step;
   wider.objective = wider.residual.squaredNorm() / bench.sigma2;
-  wider.point.strengths[index(wider.active.back())] +=
-      step[step.size() - 1] * bench.candidates[wider.active.back()].prior_scale;
+  Candidate const& candidate = bench.candidates[wider.active.back()];
+  double& strength = wider.point.strengths[index(wider.active.back())];
+  strength = std::clamp(strength + step[step.size() - 1] * candidate.prior_scale,
+                        candidate.two_sided ? -candidate.largest : 0.0, candidate.largest);
   return wider;
 }
 
@@ -127,7 +129,9 @@ Adequacy chi2_of(Workbench const& bench, Projection const& project, Eigen::Vecto
   found.chi2 = left.squaredNorm() / bench.sigma2;
   found.dof =
       static_cast<double>(bench.frame.size() - project.rank()) - static_cast<double>(bench.frame.spared().size());
-  if (found.dof > 0)
+  if (!std::isfinite(found.chi2))
+    found.p = 0;  // the model has no answer there
+  else if (found.dof > 0)
     found.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.dof), found.chi2));
   return found;
 }
