@@ -144,7 +144,7 @@ std::string answer_in_words(Explanation const& explained) {
   text += fmt::format("  chi2 {:.1f} -> calibrated {:.1f} -> with the effects {:.1f} (dof {:.0f}, sigma {:.2f})\n",
                       found.chi2_base, found.chi2_before, found.chi2_after, found.dof, std::sqrt(found.sigma2));
   if (found.chi2_before > found.chi2_after)
-    text += fmt::format("  of the excess they explain {:.0f} %; any smooth correction could reach {:.0f} %\n",
+    text += fmt::format("  of the structure they explain {:.0f} %; any smooth correction could reach {:.0f} %\n",
                         100 * found.explained, 100 * found.smooth_explained);
   text += effect_lines(found);
   for (ParameterFinding const& p : found.parameters)
