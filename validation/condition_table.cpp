@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 
 #include "core/case_values.hpp"
@@ -176,7 +177,15 @@ ColumnName column_name(std::string const& header) {
 }
 
 std::string with_unit(std::string const& number, std::string const& unit) {
-  return unit.empty() || unit == "-" || unit == "1" ? number : number + " " + unit;
+  if (unit.empty() || unit == "-" || unit == "1") return number;
+  double value = 0;
+  char const* const last = number.data() + number.size();
+  auto const [end, fault] = std::from_chars(number.data(), last, value);
+  char const* const rest = std::find_if(end, last, [](char c) { return c != ' '; });
+  if (fault == std::errc{} && rest != last && *rest != ',')
+    throw InputError(
+        fmt::format("\"{}\" has a unit of its own (the column gives {}) write the number alone", number, unit));
+  return number + " " + unit;
 }
 
 double parse_difference(std::string const& number, std::string const& unit, Dimension dimension) {

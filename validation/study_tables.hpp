@@ -18,6 +18,7 @@ struct ColumnName {
 ColumnName column_name(std::string const& header);
 
 /// Number and unit as one text for parse_quantity; "-" and "1" stand for no unit.
+/// \throws InputError where the number has a unit as well ("0.057 m" and "m" must not become millimetres)
 std::string with_unit(std::string const& number, std::string const& unit);
 
 /// A difference between two values, so that degC counts as K. \throws InputError
