@@ -168,7 +168,8 @@ std::string overlay(Explanation const& explained, CandidateFinding const& effect
   if (column >= found.table.signatures.cols()) return "";
   // The score of a two-sided candidate has no sign; its signature tells which way it would have to go.
   double const way = found.table.signatures.col(column).dot(found.table.residual_before) < 0 ? -1 : 1;
-  double const factor = (two_sided ? way : 1) * std::abs(effect.strength) / prior_scale;
+  // Residuals are in units of the scatter found, signatures in those of the stated uncertainties.
+  double const factor = (two_sided ? way : 1) * std::abs(effect.strength) / (prior_scale * std::sqrt(found.sigma2));
   std::vector<PointSeries> series;
   for (std::string const& quantity : quantities_of(explained.study)) {
     PointSeries& s = series.emplace_back(PointSeries{.name = quantity, .x = {}, .y = {}});

@@ -35,8 +35,11 @@ std::string cards(Explanation const& explained) {
                   with_uncertainty(effect.strength, effect.u_strength),
                   fmt::format("strength &plusmn; 1 sd; z {:.1f}, ln B {:.1f}, {:.0f} % kept", effect.z, effect.evidence,
                               100 * effect.kept_fraction));
-  all += card("Misfit", fmt::format("{} &rarr; {}", significant(found.chi2_before), significant(found.chi2_after)),
-              fmt::format("chi2 after calibration and with the effects; {:.0f} degrees of freedom", found.dof));
+  std::string const scaled =
+      found.sigma2 > 1 ? fmt::format("; uncertainties taken {:.2g} times as large", std::sqrt(found.sigma2)) : "";
+  all +=
+      card("Misfit", fmt::format("{} &rarr; {}", significant(found.chi2_before), significant(found.chi2_after)),
+           fmt::format("chi2 after calibration and with the effects; {:.0f} degrees of freedom{}", found.dof, scaled));
   if (found.chi2_before > found.dof)
     all += card("Explained", fmt::format("{:.0f} %", 100 * std::clamp(found.explained, 0.0, 1.0)),
                 fmt::format("of the excess; any smooth correction {:.0f} %", 100 * found.smooth_explained));
