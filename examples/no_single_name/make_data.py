@@ -1,9 +1,9 @@
-"""Makes the studies group and unknown: tracks as examples/hidden_effect has them, by the program itself, in other cells and
-with an absorptivity of its own.
+"""Makes the studies group and unknown: tracks as examples/hidden_effect has them, by the program itself, in other cells
+and with an absorptivity of its own.
 group    melt that flows, seen in two sections of each of six tracks
-unknown  melt that flows in the case as well, and a machine that loses a third of its power between 600 and 800 mm/s, which
-         no candidate does
-Usage: make_data.py LAYERLOOP [POWER SPEED N]   with POWER [W], SPEED [mm/s]: prints N further rows of each quantity for group
+unknown  melt that flows in the case as well, and a machine that loses a third of its power between 600 and 800 mm/s,
+         which no candidate does
+Usage: make_data.py LAYERLOOP [POWER SPEED N]   with POWER [W], SPEED [mm/s]: prints N more rows a quantity for group
 """
 import json
 import pathlib
