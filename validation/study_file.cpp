@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/case_values.hpp"
+#include "core/communicator.hpp"
 #include "core/error.hpp"
 #include "core/spelling.hpp"
 #include "core/write_file.hpp"
@@ -143,7 +144,7 @@ Study read_study(fs::path const& folder, Role which) {
   throw_if_any(files);
   std::vector<std::string> const limits = limits_of(study, has_role(measurements, "holdout"));
   study.limits.insert(study.limits.end(), limits.begin(), limits.end());
-  if (which == Role::holdout) log_holdout_look(study.folder);
+  if (which == Role::holdout && Communicator().is_root()) log_holdout_look(study.folder);  // one look, of all ranks
   return study;
 }
 
