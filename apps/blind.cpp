@@ -16,7 +16,9 @@ using validation::Also;
 using validation::BlindSet;
 
 struct BlindOptions {
-  fs::path folder;
+  fs::path folder, out;
+  std::vector<fs::path> folders;
+  std::string world = "analytic";
   std::size_t scenarios = 300;
   std::uint64_t seed = 1;
   BlindSet set = BlindSet::development;
@@ -52,12 +54,18 @@ void add_blind(CLI::App& program, Action& chosen) {
 
   CLI::App* const make = step(*verb, options, "make", "Draw studies with hidden causes and seal the answers.");
   make->add_option("--scenarios", options.scenarios, "how many")->capture_default_str()->check(CLI::Range(1, 100000));
+  make->add_option("--world", options.world,
+                   "what stands for the process: a chain of formulas (analytic), or the stages of this program on "
+                   "spread beds (powder), their absorptivity (light), tracks on a plate (tracks) or on powder (layer)")
+      ->capture_default_str()
+      ->check(CLI::IsMember(validation::world_names()));
   make->add_option("--seed", options.seed, "the secret that opens the seals")->required();
   make->add_option("--set", options.set, "development (thresholds may be tuned on it) or scored (used once)")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, BlindSet>{{"development", BlindSet::development}, {"scored", BlindSet::scored}}));
-  on_call(make, options, chosen,
-          [] { validation::make_blind_test(options.folder, options.scenarios, options.seed, options.set); });
+  on_call(make, options, chosen, [] {
+    validation::make_blind_test(options.folder, options.world, options.scenarios, options.seed, options.set);
+  });
 
   CLI::App* const run = step(*verb, options, "run", "Diagnose every study; the verdicts are hashed.");
   run->add_option("--also", options.also, "baselines, or ablations (which includes them)")
@@ -70,8 +78,13 @@ void add_blind(CLI::App& program, Action& chosen) {
   on_call(open, options, chosen,
           [] { fmt::print("{} answers opened\n", validation::open_blind_test(options.folder, options.seed).size()); });
 
-  CLI::App* const score = step(*verb, options, "score", "Count how often the diagnoses were right.");
-  on_call(score, options, chosen, [] { fmt::print("{}", validation::write_blind_report(options.folder)); });
+  CLI::App* const score = verb->add_subcommand("score", "Count how often the diagnoses were right.");
+  score->add_option("DIR", options.folders, "folders of blind tests, scored together")->required();
+  score->add_option("-o,--output", options.out, "folder for the report (default: the first DIR)");
+  on_call(score, options, chosen, [] {
+    fmt::print("{}", validation::write_blind_report(options.folders,
+                                                    options.out.empty() ? options.folders.front() : options.out));
+  });
 }
 
 }  // namespace layerloop::apps

@@ -206,6 +206,7 @@ class StageModel final : public Model {
   /// Of every observable on a bare plate, from two grids at the base point; not a number: it has none there.
   void find_error_of_mesh() {
     error_of_mesh_.assign(study_.observables.size(), std::nan(""));
+    if (std::ranges::none_of(jobs_, &Job::on_plate)) return;
     Samples const base = sample(base_point());
     for (Job const& job : jobs_) {
       for (std::size_t const i : job.observables)

@@ -69,7 +69,7 @@ TEST(Truth, is_the_chain_when_nothing_is_hidden) {
   Eigen::VectorXd calibration(static_cast<Eigen::Index>(study.calibration.size()));
   for (std::size_t k = 0; k < study.calibration.size(); ++k)
     calibration[static_cast<Eigen::Index>(k)] = study.calibration[k].mean + 0.7 * study.calibration[k].sd;
-  Eigen::VectorXd const truth = world->truth(study, calibration, {}),
+  Eigen::VectorXd const truth = world->truth(study, calibration, {}, 0),
                         chain = model->predict({calibration, Eigen::VectorXd(0)}).value;
   EXPECT_LT(((truth - chain).array() / chain.array()).abs().maxCoeff(), 0.012);  // the kink in a table of widths
   EXPECT_LT(((truth - chain).array() / chain.array()).abs().mean(), 5e-4);
@@ -84,14 +84,14 @@ TEST(Truth, has_other_forms_than_the_chain) {
                    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidates.size()))};
   for (std::size_t k = 0; k < study.calibration.size(); ++k)
     point.calibration[static_cast<Eigen::Index>(k)] = study.calibration[k].mean;
-  Eigen::VectorXd const base = model->predict(point).value, plain = world->truth(study, point.calibration, {});
+  Eigen::VectorXd const base = model->predict(point).value, plain = world->truth(study, point.calibration, {}, 0);
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (candidates[c].kind != EffectClass::physics || candidates[c].name == "latent_heat") continue;
     ModelPoint with = point;
     with.strengths[static_cast<Eigen::Index>(c)] = candidates[c].prior_scale;
     Eigen::VectorXd const chain = model->predict(with).value - base;
     Eigen::VectorXd const truth =
-        world->truth(study, point.calibration, {{candidates[c].name, candidates[c].prior_scale}}) - plain;
+        world->truth(study, point.calibration, {{candidates[c].name, candidates[c].prior_scale}}, 0) - plain;
     EXPECT_GT(truth.cwiseQuotient(base).norm(), 0.01) << candidates[c].name << " does nothing";
     EXPECT_GT((chain - truth).cwiseQuotient(base).norm(), 1e-3) << candidates[c].name << " has the catalogue's form";
     EXPECT_LT((chain - truth).cwiseQuotient(base).norm(), 0.8 * truth.cwiseQuotient(base).norm()) << candidates[c].name;
@@ -113,9 +113,9 @@ TEST(Readings, scatter_as_their_study_says) {
 
 TEST(BlindTest, writes_studies_that_read_back_bit_for_bit) {
   Folder const folder("files");
-  make_blind_test(folder.path, 3, 4, BlindSet::development);
+  make_blind_test(folder.path, "analytic", 3, 4, BlindSet::development);
   auto const world = analytic_world();
-  Scenario const drawn = draw_scenario(*world, class_of(1), "s002", secret_of(4, "development", "s002"));
+  Scenario const drawn = draw_scenario(*world, world->classes()[1], "s002", secret_of(4, "development", "s002"));
   Study const read = read_study(folder.path / "s002"), expected = part_of(drawn.study, Role::train);
   ASSERT_EQ(read.observations.size(), expected.observations.size());
   for (std::size_t i = 0; i < read.observations.size(); ++i) {
@@ -133,8 +133,8 @@ TEST(BlindTest, writes_studies_that_read_back_bit_for_bit) {
 
 TEST(BlindTest, refuses_what_was_changed_and_what_is_out_of_order) {
   Folder const folder("order");
-  make_blind_test(folder.path, 2, 4, BlindSet::development);
-  EXPECT_THROW(make_blind_test(folder.path, 2, 4, BlindSet::development), InputError);
+  make_blind_test(folder.path, "analytic", 2, 4, BlindSet::development);
+  EXPECT_THROW(make_blind_test(folder.path, "analytic", 2, 4, BlindSet::development), InputError);
   EXPECT_THROW(open_blind_test(folder.path, 4), InputError);
   EXPECT_THROW(opened_blind_test(folder.path), InputError);
   run_blind_test(folder.path, Also::nothing);
@@ -161,7 +161,7 @@ double chance(Score const& score) {
 /// Every bar holds: shares within what a set of this size can tell, figures by their value. The table is printed.
 TEST(BlindTest, of_more_than_two_hundred_sealed_scenarios_is_passed) {
   Folder const folder("permanent");
-  make_blind_test(folder.path, 220, 20, BlindSet::development);
+  make_blind_test(folder.path, "analytic", 220, 20, BlindSet::development);
   run_blind_test(folder.path, Also::baselines);
   std::vector<Opened> const opened = open_blind_test(folder.path, 20);
   std::vector<Score> const scores = scores_of(opened);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "validation/blind/scenario.hpp"
@@ -8,6 +9,15 @@ namespace layerloop::validation {
 namespace {
 
 std::array<std::string, 10> const letters{"a", "c1", "c2", "d", "e", "f", "g", "h", "i", "r"};
+
+/// What is not a number is written as null.
+double number(nlohmann::json const& json) { return json.is_number() ? json.get<double>() : NAN; }
+
+std::vector<double> numbers(nlohmann::json const& list) {
+  std::vector<double> all;
+  for (nlohmann::json const& one : list) all.push_back(number(one));
+  return all;
+}
 
 }  // namespace
 
@@ -18,8 +28,11 @@ double Answer::visibility() const { return visibilities.empty() ? 0 : *std::rang
 void to_json(nlohmann::json& json, Answer const& answer) {
   nlohmann::json causes = nlohmann::json::array();
   for (HiddenCause const& cause : answer.causes)
-    causes.push_back(
-        {{"name", cause.name}, {"strength", cause.strength}, {"from", cause.from}, {"label", cause.label}});
+    causes.push_back({{"name", cause.name},
+                      {"strength", cause.strength},
+                      {"from", cause.from},
+                      {"label", cause.label},
+                      {"other_form", cause.other_form}});
   json = {{"id", answer.id},
           {"class", letter_of(answer.kind)},
           {"text", answer.text},
@@ -39,12 +52,13 @@ void from_json(nlohmann::json const& json, Answer& answer) {
   answer.kind = static_cast<ScenarioClass>(std::ranges::find(letters, letter) - letters.begin());
   answer.causes.clear();
   for (nlohmann::json const& cause : json.at("causes"))
-    answer.causes.push_back({cause.at("name"), cause.at("strength"), cause.at("from"), cause.at("label")});
+    answer.causes.push_back(
+        {cause.at("name"), cause.at("strength"), cause.at("from"), cause.at("label"), cause.at("other_form")});
   json.at("id").get_to(answer.id);
   json.at("text").get_to(answer.text);
-  json.at("visibilities").get_to(answer.visibilities);
-  json.at("strengths").get_to(answer.strengths);
-  json.at("largest_cosine").get_to(answer.largest_cosine);
+  answer.visibilities = numbers(json.at("visibilities"));
+  answer.strengths = numbers(json.at("strengths"));
+  answer.largest_cosine = number(json.at("largest_cosine"));
   json.at("nearest").get_to(answer.nearest);
   json.at("variables").get_to(answer.variables);
   json.at("quantities").get_to(answer.quantities);

@@ -226,31 +226,41 @@ std::string text_of(std::vector<Score> const& scores) {
   return text;
 }
 
-std::string write_blind_report(std::filesystem::path const& folder) {
-  std::vector<Opened> const all = opened_blind_test(folder);
-  std::vector<std::string> const methods = other_methods(folder);
+std::string write_blind_report(std::vector<std::filesystem::path> const& folders, std::filesystem::path const& out) {
+  std::vector<Opened> all;
+  std::vector<std::string> worlds, methods = other_methods(folders.front());
+  for (std::filesystem::path const& folder : folders) {
+    json const manifest = json::parse(read_file(folder / "manifest.json"));
+    worlds.push_back(manifest.at("world"));
+    if (other_methods(folder) != methods) methods.clear();
+    for (Opened& one : opened_blind_test(folder)) {
+      if (folders.size() > 1) one.answer.id = fmt::format("{} {}", worlds.back(), one.answer.id);
+      all.push_back(std::move(one));
+    }
+  }
   std::vector<Score> const scores = scores_of(all);
-  json const verdicts = json::parse(read_file(folder / "verdicts.json"));
-  json const manifest = json::parse(read_file(folder / "manifest.json"));
+  json const verdicts = json::parse(read_file(folders.front() / "verdicts.json"));
+  json const manifest = json::parse(read_file(folders.front() / "manifest.json"));
   json summary{{"set", manifest.at("set")},
                {"scenarios", all.size()},
                {"thresholds", verdicts.at("thresholds")},
                {"thresholds_sha256", verdicts.at("thresholds_sha256")},
                {"scores", json_of(scores)}};
   for (std::size_t m = 0; m < methods.size(); ++m) summary["others"][methods[m]] = json_of(scores_of(all, m));
-  write_file(folder / "score.json", summary.dump(1) + "\n");
-  write_file(folder / "score.csv", score_csv(scores));
-  write_file(folder / "score.md", markdown(all, methods));
-  write_file(folder / "scenarios.csv", scenarios_csv(all));
+  std::filesystem::create_directories(out);
+  write_file(out / "score.json", summary.dump(1) + "\n");
+  write_file(out / "score.csv", score_csv(scores));
+  write_file(out / "score.md", markdown(all, methods));
+  write_file(out / "scenarios.csv", scenarios_csv(all));
 
   std::string const set = manifest.at("set"), hash = verdicts.at("thresholds_sha256");
   auto const missed = std::ranges::count_if(scores, [](Score const& s) { return !s.passes_for_sure(); });
   coupling::Page page{
       .title = "Blind test",
       .version = LAYERLOOP_VERSION,
-      .headline = fmt::format("{} sealed scenarios of the {} set ({} model): {} of {} scores pass by the "
+      .headline = fmt::format("{} sealed scenarios of the {} set (world: {}): {} of {} scores pass by the "
                               "bound of their interval.",
-                              all.size(), set, std::string(manifest.at("world")),
+                              all.size(), set, fmt::join(worlds, ", "),
                               static_cast<std::ptrdiff_t>(scores.size()) - missed, scores.size()),
       .cards = ""};
   page.files = "; scores in score.csv, every scenario in scenarios.csv";
@@ -264,7 +274,7 @@ std::string write_blind_report(std::filesystem::path const& folder) {
   page.add("failures", "Failures", failure_table(all, scores));
   page.add("thresholds", "Thresholds",
            fmt::format("<p>{}</p>\n<p>sha256 {}</p>\n", escape(std::string(verdicts.at("thresholds"))), hash));
-  write_file(folder / "report.html", page.html());
+  write_file(out / "report.html", page.html());
   return text_of(scores);
 }
 

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/progress.hpp"
 #include "core/write_file.hpp"
-#include "validation/blind/analytic_design.hpp"
 #include "validation/blind/seal.hpp"
 #include "validation/blind/study_writer.hpp"
 #include "validation/digest.hpp"
@@ -23,32 +24,18 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The chain is not the program: this only makes the folder a study.
-constexpr auto case_text = R"([powder]
-material = "316L"
-
-[laser]
-power = "200 W"
-wavelength = "1070 nm"
-spot_diameter = "80 um"
-spot_definition = "D4sigma"
-absorptivity = 0.35
-
-[scan]
-kind = "track"
-scan_speed = "800 mm/s"
-track_length = "1 mm"
-)";
-
 std::string id_of(std::size_t number) { return fmt::format("s{:03}", number + 1); }
 
-/// Calls for every number below `count`, on all cores; the first error goes on to the caller.
-void in_parallel(std::size_t count, std::function<void(std::size_t)> const& action) {
+/// Calls for every number below `count`, on all cores, or one after another where a call is itself the stages at work;
+/// the first error goes on to the caller.
+void for_all(std::size_t count, Effort effort, std::function<void(std::size_t)> const& action) {
   std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1)
+  Progress progress("scenarios", static_cast<double>(count), effort == Effort::dear);
+#pragma omp parallel for schedule(dynamic, 1) if (effort == Effort::free)
   for (std::size_t i = 0; i < count; ++i) {
     try {
-      action(i);
+      if (!failure) action(i);
+      if (effort == Effort::dear) progress.update(static_cast<double>(i + 1));
     } catch (...) {
 #pragma omp critical
       if (!failure) failure = std::current_exception();
@@ -146,16 +133,18 @@ std::string text_of(Thresholds const& t) {
       t.whole, t.structure_p, t.several_p, t.twin_cosine, t.most_effects, t.refitted_candidates);
 }
 
-void make_blind_test(fs::path const& folder, std::size_t scenarios, std::uint64_t seed, BlindSet set) {
+void make_blind_test(fs::path const& folder, std::string const& world_name, std::size_t scenarios, std::uint64_t seed,
+                     BlindSet set) {
   if (fs::exists(folder / "manifest.json"))
     throw InputError(
         fmt::format("{} holds a blind test already (a set is drawn once) give another folder", folder.string()));
-  auto const world = analytic_world();
+  auto const world = world_of(world_name, folder);
+  std::vector<ScenarioClass> const classes = world->classes();
   std::vector<json> listed(scenarios);
-  in_parallel(scenarios, [&](std::size_t i) {
+  for_all(scenarios, world->effort(), [&](std::size_t i) {
     std::string const id = id_of(i);
-    Scenario const scenario = draw_scenario(*world, class_of(i), id, secret_of(seed, name_of(set), id));
-    write_study(scenario.study, case_text, folder / id);
+    Scenario const scenario = draw_scenario(*world, classes[i % classes.size()], id, secret_of(seed, name_of(set), id));
+    write_study(scenario.study, world->case_text(), folder / id);
     std::string const box = seal(json(scenario.answer).dump(), seed, name_of(set), id);
     write_file(folder / id / "answer.sealed", box);
     listed[i] = {{"id", id}, {"withheld", scenario.withheld}, {"sealed_sha256", sha256(box)}};
@@ -168,13 +157,15 @@ void run_blind_test(fs::path const& folder, Also also) {
   if (fs::exists(folder / "verdicts.json"))
     throw InputError(
         fmt::format("{} has its verdicts already (they are given once) draw another set", folder.string()));
-  std::vector<Listed> const all = scenarios_of(manifest_of(folder));
-  auto const world = analytic_world();
+  json const manifest = manifest_of(folder);
+  std::vector<Listed> const all = scenarios_of(manifest);
+  auto const world = world_of(manifest.at("world"), folder);
   std::vector<std::string> hashes(all.size());
-  in_parallel(all.size(), [&](std::size_t i) {
+  for_all(all.size(), world->effort(), [&](std::size_t i) {
     checked_box(folder, all[i]);
-    write_json(folder / all[i].id / "verdict.json", verdict_of(*world, folder, all[i], also, i));
-    hashes[i] = sha256(read_file(folder / all[i].id / "verdict.json"));
+    fs::path const verdict = folder / all[i].id / "verdict.json";
+    if (!fs::exists(verdict)) write_json(verdict, verdict_of(*world, folder, all[i], also, i));
+    hashes[i] = sha256(read_file(verdict));
   });
   json verdicts{{"thresholds", text_of({})}, {"thresholds_sha256", sha256(text_of({}))}, {"methods", methods_of(also)}};
   for (std::size_t i = 0; i < all.size(); ++i) verdicts["sha256"][all[i].id] = hashes[i];
@@ -185,8 +176,8 @@ std::vector<Opened> open_blind_test(fs::path const& folder, std::uint64_t seed) 
   json const manifest = manifest_of(folder);
   json const verdicts = read_json(folder / "verdicts.json", "layerloop blind run comes before blind open");
   std::vector<Listed> const all = scenarios_of(manifest);
-  auto const world = analytic_world();
-  in_parallel(all.size(), [&](std::size_t i) {
+  auto const world = world_of(manifest.at("world"), folder);
+  for_all(all.size(), world->effort(), [&](std::size_t i) {
     fs::path const at = folder / all[i].id;
     if (sha256(read_file(at / "verdict.json")) != verdicts.at("sha256").at(all[i].id))
       throw InputError(
@@ -212,10 +203,13 @@ std::vector<Opened> opened_blind_test(fs::path const& folder) {
   for (Listed const& listed : scenarios_of(manifest_of(folder))) {
     json const answer = read_json(folder / listed.id / "answer.json", "layerloop blind open comes before blind score");
     json const verdict = read_json(folder / listed.id / "verdict.json", "layerloop blind run comes first");
-    json const& forecast = answer.at("forecast");
+    auto const forecast = [&](char const* name) {
+      json const& figure = answer.at("forecast").at(name);
+      return figure.is_number() ? figure.get<double>() : NAN;  // what is not a number is written as null
+    };
     opened.push_back({answer.get<Answer>(),
                       verdict.at("judgement").get<Judgement>(),
-                      {forecast.at("calibrated"), forecast.at("named"), forecast.at("smooth"), forecast.at("whitened")},
+                      {forecast("calibrated"), forecast("named"), forecast("smooth"), forecast("whitened")},
                       verdict.at("others").get<std::vector<Judgement>>()});
   }
   return opened;

@@ -16,13 +16,15 @@ enum class BlindSet { development, scored };
 std::string const& name_of(BlindSet set);
 
 /// Writes DIR/sNNN/{study.toml, conditions.csv, measurements.csv, case.toml, answer.sealed} and DIR/manifest.json with
-/// the sha256 of every sealed answer. In parallel; the same for any number of threads.
-void make_blind_test(std::filesystem::path const& folder, std::size_t scenarios, std::uint64_t seed, BlindSet set);
+/// the sha256 of every sealed answer. The same for any number of threads. \param world  one of world_names()
+void make_blind_test(std::filesystem::path const& folder, std::string const& world, std::size_t scenarios,
+                     std::uint64_t seed, BlindSet set);
 
 enum class Also { nothing, baselines, baselines_and_ablations };
 
 /// Diagnoses every study into DIR/sNNN/verdict.json and their hashes, with that of the thresholds, into
-/// DIR/verdicts.json. \throws InputError  a sealed answer is not the one that was published; there are verdicts already
+/// DIR/verdicts.json. Goes on where it was stopped. \throws InputError  a sealed answer is not the one that was
+/// published; there are verdicts already
 void run_blind_test(std::filesystem::path const& folder, Also also);
 
 /// Opens the answers into DIR/sNNN/answer.json, and predicts what was held out as the verdicts say.

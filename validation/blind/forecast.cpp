@@ -1,5 +1,6 @@
 #include "validation/blind/forecast.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "validation/error_model.hpp"
@@ -51,6 +52,14 @@ Eigen::VectorXd smooth_correction(Study const& training, Study const& holdout, E
   return correction;
 }
 
+/// The study without the observations of which some number is unknown (a guard stopped the model, nothing melts).
+Study known(Study study, std::vector<Eigen::VectorXd> const& by_observable) {
+  std::erase_if(study.observations, [&](Observation const& row) {
+    return std::ranges::any_of(by_observable, [&](auto const& v) { return !std::isfinite(v[index(row.observable)]); });
+  });
+  return study;
+}
+
 }  // namespace
 
 Forecast forecast_of(World const& world, Study const& training, Study const& holdout,
@@ -60,19 +69,19 @@ Forecast forecast_of(World const& world, Study const& training, Study const& hol
   auto const model = world.model(holdout, candidates), trained = world.model(training, candidates);
   ModelPoint const before{vector_of(judgement.calibrated), Eigen::VectorXd::Zero(index(candidates.size())), 1},
       after{vector_of(judgement.final_calibration), vector_of(judgement.final_strengths), 1};
-  Eigen::VectorXd truths(index(holdout.observations.size()));
+  Prediction const first = model->predict(before), second = model->predict(after), fitted = trained->predict(before);
+  Study const seen = known(training, {fitted.value}), unseen = known(holdout, {first.value, second.value});
+  if (seen.observations.empty() || unseen.observations.empty()) return {NAN, NAN, NAN, NAN};
+  Eigen::VectorXd truths(index(unseen.observations.size()));
   for (Eigen::Index i = 0; i < truths.size(); ++i)
-    truths[i] = truth.at(holdout.observations[static_cast<std::size_t>(i)].id);
-  Prediction const second = model->predict(after);
-  Eigen::VectorXd const u = u_stat(holdout), a = at_observations(holdout, model->predict(before).value),
-                        b = at_observations(holdout, second.value);
+    truths[i] = truth.at(unseen.observations[static_cast<std::size_t>(i)].id);
+  Eigen::VectorXd const u = u_stat(unseen), b = at_observations(unseen, second.value);
   Eigen::VectorXd const residual =
-      (measured_values(training) - at_observations(training, trained->predict(before).value))
-          .cwiseQuotient(u_stat(training));
-  Eigen::VectorXd const off = (a - truths).cwiseQuotient(u);
-  Whitening const whiten(covariance(holdout, second));
-  return {rms(off), rms((b - truths).cwiseQuotient(u)), rms(off + smooth_correction(training, holdout, residual)),
-          rms(whiten(measured_values(holdout) - b))};
+      (measured_values(seen) - at_observations(seen, fitted.value)).cwiseQuotient(u_stat(seen));
+  Eigen::VectorXd const off = (at_observations(unseen, first.value) - truths).cwiseQuotient(u);
+  Whitening const whiten(covariance(unseen, second));
+  return {rms(off), rms((b - truths).cwiseQuotient(u)), rms(off + smooth_correction(seen, unseen, residual)),
+          rms(whiten(measured_values(unseen) - b))};
 }
 
 }  // namespace layerloop::validation

@@ -10,6 +10,7 @@
 #include "core/random.hpp"
 #include "validation/blind/analytic_design.hpp"
 #include "validation/blind/separation.hpp"
+#include "validation/condition_case.hpp"
 #include "validation/truth/readings.hpp"
 
 namespace layerloop::validation {
@@ -33,7 +34,7 @@ class Draw {
 
   Scenario finish() {
     Answer& answer = scenario_.answer;
-    Eigen::VectorXd const truth = world_.truth(scenario_.study, calibration_, answer.causes);
+    Eigen::VectorXd const truth = world_.truth(scenario_.study, calibration_, answer.causes, secret_);
     take_readings(scenario_.study, truth, errors_, secret_);
     std::erase_if(scenario_.study.observations, [](Observation const& row) { return !(row.value > 0); });
     for (Observation const& row : scenario_.study.observations) answer.truth[row.id] = truth[index(row.observable)];
@@ -57,15 +58,26 @@ class Draw {
     return some;
   }
 
+  std::vector<Candidate> hidden_effects() const {
+    std::vector<std::string> const names = world_.hidden_effects();
+    std::vector<Candidate> some;
+    std::ranges::copy_if(candidates_, std::back_inserter(some),
+                         [&](auto const& c) { return std::ranges::find(names, c.name) != names.end(); });
+    return some;
+  }
+
   void hide_candidate(Candidate const& candidate, Visible visible) {
-    double const direction = candidate.two_sided ? sign() : 1;
-    hide({candidate.name, direction * candidate.prior_scale}, candidate.largest, visible);
+    constexpr double share_of_other_forms = 0.7;
+    HiddenCause cause{candidate.name, (candidate.two_sided ? sign() : 1) * candidate.prior_scale};
+    cause.other_form = world_.has_other_form(candidate.name) && uniform() < share_of_other_forms;
+    hide(cause, candidate.largest, visible);
   }
 
   /// Adds a cause, as strong as a drawn visibility wants it and its bound allows.
   void hide(HiddenCause cause, double largest, Visible visible) {
     double const wanted = visible == Visible::clearly ? log_uniform(5, 30) : log_uniform(2, 30);
-    for (int iteration = 0; iteration < 4; ++iteration) {
+    int const trials = world_.effort() == Effort::free ? 4 : 2;
+    for (int trial = 0; trial < trials; ++trial) {
       double const factor = wanted / visibility_of({cause});
       if (!(std::abs(factor - 1) > 0.1)) break;
       double const magnitude = std::abs(cause.strength) * std::clamp(factor, 0.02, 20.0);
@@ -79,7 +91,8 @@ class Draw {
     Eigen::VectorXd const change = change_of({cause});
     answer.causes.push_back(cause);
     answer.visibilities.push_back(separation().visibility(change));
-    answer.strengths.push_back(separation().equivalent_strength(cause.name, change));
+    bool const as_catalogued = world_.effort() == Effort::dear && !cause.other_form;
+    answer.strengths.push_back(as_catalogued ? cause.strength : separation().equivalent_strength(cause.name, change));
     if (answer.causes.size() > 1) return;
     auto const nearest = separation().nearest(change, {cause.name});
     answer.nearest = nearest.name, answer.largest_cosine = nearest.cosine;
@@ -89,6 +102,7 @@ class Draw {
     return separation().nearest(change_of({{candidate.name, candidate.prior_scale}}), {candidate.name});
   }
 
+  World const& world() const { return world_; }
   Answer& answer() { return scenario_.answer; }
   ReadingErrors& errors() { return errors_; }
   std::vector<std::string>& withheld() { return scenario_.withheld; }
@@ -116,16 +130,17 @@ class Draw {
 
   Separation& separation() {
     if (!separation_) {
+      probed_ = world_.effort() == Effort::free ? calibration_ : prior_means(train_);
       model_ = world_.model(train_, candidates_);
-      separation_ = std::make_unique<Separation>(train_, *model_, candidates_, calibration_);
-      plain_ = world_.truth(train_, calibration_, {});
+      separation_ = std::make_unique<Separation>(train_, *model_, candidates_, probed_, world_.effort());
+      plain_ = world_.truth(train_, probed_, {}, probing_seed);
     }
     return *separation_;
   }
 
   Eigen::VectorXd change_of(std::vector<HiddenCause> const& causes) {
     separation();
-    Eigen::VectorXd const change = world_.truth(train_, calibration_, causes) - plain_;
+    Eigen::VectorXd const change = world_.truth(train_, probed_, causes, probing_seed) - plain_;
     return change.array().isFinite().select(change, 0);  // where nothing melts, nobody measures a pool
   }
   double visibility_of(std::vector<HiddenCause> const& causes) {
@@ -133,13 +148,16 @@ class Draw {
     return separation().visibility(change);
   }
 
+  static constexpr std::uint64_t probing_seed = 1;  // of all scenarios, so that they share what was computed
+
   World const& world_;
   std::uint64_t secret_;
   std::uint32_t draws_ = 0;
   std::vector<Candidate> candidates_;
   Scenario scenario_;
   Study train_;
-  Eigen::VectorXd calibration_, plain_;
+  Eigen::VectorXd calibration_;
+  Eigen::VectorXd probed_, plain_;  ///< calibration where visibilities are judged, and the truth there without a cause
   std::unique_ptr<Model> model_;
   std::unique_ptr<Separation> separation_;
   ReadingErrors errors_;
@@ -153,23 +171,21 @@ std::string told(Answer const& answer) {
   return text;
 }
 
-void hide_one_effect(Draw& draw) {
-  draw.hide_candidate(draw.one_of(draw.candidates_of(EffectClass::physics)), Visible::faintly_too);
-}
+void hide_one_effect(Draw& draw) { draw.hide_candidate(draw.one_of(draw.hidden_effects()), Visible::faintly_too); }
 
 void hide_withheld_effect(Draw& draw) {
-  draw.hide_candidate(draw.one_of(draw.candidates_of(EffectClass::physics)), Visible::clearly);
+  draw.hide_candidate(draw.one_of(draw.hidden_effects()), Visible::clearly);
   draw.withheld() = {draw.answer().causes.front().name};
 }
 
 void hide_foreign_cause(Draw& draw) {
-  ForeignCause const cause = draw.one_of(foreign_causes());
+  ForeignCause const cause = draw.one_of(draw.world().foreign_causes());
   draw.hide({cause.name, 1}, cause.largest, Visible::clearly);
   draw.answer().variables = cause.variables, draw.answer().quantities = cause.quantities;
 }
 
 void hide_two_effects(Draw& draw) {
-  auto const physics = draw.candidates_of(EffectClass::physics);
+  auto const physics = draw.hidden_effects();
   Candidate const first = draw.one_of(physics);
   Candidate second = draw.one_of(physics);
   while (second.name == first.name || draw.nearest_to(first).name == second.name) second = draw.one_of(physics);
@@ -179,7 +195,7 @@ void hide_two_effects(Draw& draw) {
 
 /// One effect of those that have a twin in this design.
 void hide_twins(Draw& draw) {
-  auto const physics = draw.candidates_of(EffectClass::physics);
+  auto const physics = draw.hidden_effects();
   std::vector<Candidate> with_twin;
   std::ranges::copy_if(physics, std::back_inserter(with_twin),
                        [&](Candidate const& c) { return draw.nearest_to(c).cosine > 0.97; });
@@ -212,25 +228,20 @@ void hide_not_physics(Draw& draw) {
 
 void hide_real_life(Draw& draw) {
   Answer& answer = draw.answer();
-  switch (static_cast<int>(draw.uniform() * 3.999)) {
-    case 0:
-      draw.errors().noise_factor = draw.log_uniform(0.5, 3);
-      answer.text = fmt::format("the noise is {:.2f} times what is stated", draw.errors().noise_factor);
-      return;
-    case 1:
-      draw.hide({"lot_jump", draw.sign(), draw.uniform(0.25, 0.75)}, 3, Visible::faintly_too);
-      answer.text = "an unlabelled change of lot: " + told(answer);
-      return;
-    case 2:
-      draw.hide({"focus_jump", draw.sign(), draw.uniform(0.25, 0.75)}, 2, Visible::faintly_too);
-      answer.text = "an unlabelled jump of the focus: " + told(answer);
-      return;
-    default: {
-      std::vector<std::string> const keys{"laser.power", "scan.scan_speed", "laser.spot_diameter"};
-      std::string const machine = draw.uniform() < 0.5 ? "" : "B";
-      draw.add({"error of " + draw.one_of(keys), draw.sign() * draw.uniform(0.05, 0.10), 0, machine});
-      answer.text = "a biased input" + std::string(machine.empty() ? ": " : " of machine B: ") + told(answer);
-    }
+  auto const which = static_cast<std::size_t>(draw.uniform() * 3.999);
+  if (which == 0) {
+    draw.errors().noise_factor = draw.log_uniform(0.5, 3);
+    answer.text = fmt::format("the noise is {:.2f} times what is stated", draw.errors().noise_factor);
+  } else if (which < 3) {
+    std::vector<ForeignCause> const jumps = draw.world().jumps();
+    ForeignCause const& jump = jumps[which % jumps.size()];
+    draw.hide({jump.name, draw.sign(), draw.uniform(0.25, 0.75)}, jump.largest, Visible::faintly_too);
+    answer.text = "an unlabelled change: " + told(answer);
+  } else {
+    std::string const machine = draw.uniform() < 0.5 ? "" : "B";
+    draw.add(
+        {"error of " + draw.one_of(draw.world().biased_inputs()), draw.sign() * draw.uniform(0.05, 0.10), 0, machine});
+    answer.text = "a biased input" + std::string(machine.empty() ? ": " : " of machine B: ") + told(answer);
   }
 }
 
@@ -272,28 +283,6 @@ Scenario draw_scenario(World const& world, ScenarioClass kind, std::string const
   }
   if (draw.answer().text.empty()) draw.answer().text = told(draw.answer());
   return draw.finish();
-}
-
-ScenarioClass class_of(std::size_t number) {
-  using enum ScenarioClass;
-  static std::vector<ScenarioClass> const of_hundred = [] {
-    std::vector<ScenarioClass> shares;
-    for (auto const& [kind, count] : {std::pair{one_effect, 20},
-                                      {withheld_effect, 7},
-                                      {foreign_cause, 7},
-                                      {nothing, 10},
-                                      {wrong_calibration, 8},
-                                      {two_effects, 6},
-                                      {twins, 4},
-                                      {not_physics, 5},
-                                      {bad_noise, 9},
-                                      {real_life, 24}})
-      shares.insert(shares.end(), static_cast<std::size_t>(count), kind);
-    std::vector<ScenarioClass> spread;  // so that the start of a set has them all
-    for (std::size_t i = 0; i < shares.size(); ++i) spread.push_back(shares[i * 37 % shares.size()]);
-    return spread;
-  }();
-  return of_hundred[number % of_hundred.size()];
 }
 
 }  // namespace layerloop::validation

@@ -9,19 +9,6 @@
 
 namespace layerloop::validation {
 
-/// What kind of thing is hidden, and with it what a right answer is.
-enum class ScenarioClass {
-  one_effect,         ///< a: that effect, or its group
-  withheld_effect,    ///< c1: an effect that the candidates lack: UNKNOWN
-  foreign_cause,      ///< c2: something that no catalogue holds: UNKNOWN with the right pattern
-  nothing,            ///< d: no claim
-  wrong_calibration,  ///< e: 1 to 5 numbers 2 to 4 prior deviations off: no physics
-  two_effects,        ///< f: both
-  twins,              ///< g: two candidates that look the same: GROUP
-  bad_noise,          ///< h: outliers, understated noise, a systematic error left out: no physics
-  not_physics,        ///< i: cells, offsets, scales: named as such
-  real_life           ///< r: wrong uncertainties, an unlabelled lot or focus jump, biased inputs: no physics
-};
 /// "a", "c1", ...
 std::string const& letter_of(ScenarioClass kind);
 
@@ -54,9 +41,5 @@ struct Scenario {
 
 /// A pure function of its arguments. \param secret  seed of everything that is hidden
 Scenario draw_scenario(World const& world, ScenarioClass kind, std::string const& id, std::uint64_t secret);
-
-/// Which class the n-th scenario of a set has: of a hundred, 20 a, 7 c1, 7 c2, 10 d, 8 e, 6 f, 4 g, 5 i, and a third
-/// with what real data carry, 9 h and 24 r.
-ScenarioClass class_of(std::size_t number);
 
 }  // namespace layerloop::validation

@@ -104,7 +104,7 @@ class Table {
     std::vector<double> values;
     for (Opened const& one : all_)
       if (among(one.answer))
-        if (auto const value = read(one, judgement(one))) values.push_back(*value);
+        if (auto const value = read(one, judgement(one)); value && std::isfinite(*value)) values.push_back(*value);
     std::ranges::sort(values);
     Score score{name, of, false, 0, values.size(), NAN, {0, 1}, high_is_good, minimum, target, {}};
     auto const n = static_cast<double>(values.size());

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "validation/blind/world.hpp"
 #include "validation/candidate.hpp"
 #include "validation/error_model.hpp"
 #include "validation/model.hpp"
@@ -12,11 +13,11 @@ namespace layerloop::validation {
 
 /// How visible a difference of predictions is in a study, when calibration may swallow what it can: the noncentrality
 /// that a test for it has, and which candidates look the same. For drawing and sorting scenarios, not for analysing
-/// them: it starts from the true calibration.
+/// them. Where predictions are dear, fewer strengths are probed.
 class Separation {
  public:
   Separation(Study const& study, Model& model, std::vector<Candidate> const& candidates,
-             Eigen::VectorXd const& calibration);
+             Eigen::VectorXd const& calibration, Effort effort);
   /// lambda: length of the difference [SI, by observable] in units of its standard deviation.
   double visibility(Eigen::VectorXd const& difference) const;
 
@@ -33,9 +34,10 @@ class Separation {
   Eigen::VectorXd projected(Eigen::VectorXd const& difference) const;
   Eigen::VectorXd change(std::size_t candidate, double strength) const;
 
-  Study const& study_;
+  Study study_;  ///< what the model has an answer for
   Model& model_;
   std::vector<Candidate> const& candidates_;
+  Effort effort_;
   ModelPoint base_point_;
   Prediction base_;
   std::optional<Whitening> whiten_;

@@ -36,7 +36,8 @@ void take_readings(Study& study, Eigen::VectorXd const& truth, ReadingErrors con
     double error = errors.noise_factor * scatter(draw[0], errors.heavy_tails);
     if (draw[1] < errors.outlier_share) error = std::copysign(6 + 2 * draw[2], draw[3] - 0.5);
     bool const omitted = !errors.omitted_group.empty() && row.sys_group == errors.omitted_group;
-    double const group = row.sys_group.empty() ? 0 : shared.at(row.sys_group) * (omitted ? 2 : 1);
+    bool const none = row.sys_group.empty() || row.sys_group.starts_with(group_of_beds);
+    double const group = none ? 0 : shared.at(row.sys_group) * (omitted ? 2 : 1);
     row.value = value * (1 + row.u_sys_rel * group) + row.u_sys_abs * group + row.u_stat * error;
     if (omitted) row.u_sys_rel = 0, row.u_sys_abs = 0, row.sys_group.clear();
   }

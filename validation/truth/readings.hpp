@@ -15,6 +15,9 @@ struct ReadingErrors {
   std::string omitted_group = {};  ///< sys_group whose error is there, twice as large, but not stated
 };
 
+/// How the name of a sys_group begins whose error is in the truth already: that of the beds that were measured.
+inline constexpr auto group_of_beds = "bed ";
+
 /// Fills in the values of a study: one error a sys_group, one a row. \param truth  by observable [SI]
 void take_readings(Study& study, Eigen::VectorXd const& truth, ReadingErrors const& errors, std::uint64_t seed);
 
