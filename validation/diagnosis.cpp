@@ -48,7 +48,8 @@ double log_evidence(double z, double b, bool two_sided) {
   return std::numbers::ln2 + std::log(std::max(tail, 1e-300)) + bayes;
 }
 
-/// Pull of every calibration number at a fit.
+/// Pull of every calibration number at a fit. One that stands at its bound wants to go farther, however well the data
+/// know it there.
 std::vector<ParameterFinding> parameters_of(Study const& study, Refit const& refit, Fit const& fit) {
   Eigen::VectorXd const u = refit.uncertainty(fit);
   std::vector<ParameterFinding> all;
@@ -56,8 +57,8 @@ std::vector<ParameterFinding> parameters_of(Study const& study, Refit const& ref
     CalibrationParameter const& number = study.calibration[k];
     double const value = fit.point.calibration[index(k)];
     double const own = std::min(u[index(k)], 1e6) * number.sd;
-    all.push_back(
-        {number.name, number.mean, number.sd, value, own, (value - number.mean) / std::hypot(number.sd, own)});
+    double const spread = stands_at_bound(number, value) ? number.sd : std::hypot(number.sd, own);
+    all.push_back({number.name, number.mean, number.sd, value, own, (value - number.mean) / spread});
   }
   return all;
 }
@@ -187,7 +188,7 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   diagnosis.outliers = noise.outliers;
   diagnosis.limits = study.limits;
   if (!selection.fit.converged) diagnosis.limits.push_back("the last refit still moved when its passes were used up");
-  diagnosis.chi2_base = base.residual.squaredNorm();
+  diagnosis.chi2_base = base.residual.squaredNorm() / noise.sigma2;
   diagnosis.chi2_before = before.chi2;
   diagnosis.chi2_after = selection.adequacy.chi2;
   diagnosis.dof = selection.adequacy.dof;

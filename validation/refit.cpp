@@ -19,15 +19,16 @@ auto ulong(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
+bool stands_at_bound(CalibrationParameter const& number, double value) {
+  return std::abs(value - number.mean) > 0.99 * farthest * number.sd;
+}
+
 std::vector<Eigen::Index> movable_columns(Study const& study, Fit const& fit) {
   std::vector<Eigen::Index> columns;
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k) {
     bool const is_calibration = ulong(k) < study.calibration.size();
-    if (is_calibration) {
-      CalibrationParameter const& number = study.calibration[ulong(k)];
-      if (std::abs(fit.point.calibration[k] - number.mean) > 0.99 * farthest * number.sd) continue;
-    }
-    columns.push_back(k);
+    if (!is_calibration || !stands_at_bound(study.calibration[ulong(k)], fit.point.calibration[k]))
+      columns.push_back(k);
   }
   return columns;
 }

@@ -21,6 +21,9 @@ struct Fit {
   bool converged = false;    ///< no step is left that would gain anything
 };
 
+/// Whether a calibration number stands as far from what was believed of it as it may.
+bool stands_at_bound(CalibrationParameter const& number, double value);
+
 /// Columns of a fit's Jacobian without calibration numbers that stand as far from what was believed as they may: these
 /// can explain nothing more.
 std::vector<Eigen::Index> movable_columns(Study const& study, Fit const& fit);
