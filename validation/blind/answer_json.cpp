@@ -52,8 +52,8 @@ void from_json(nlohmann::json const& json, Answer& answer) {
   answer.kind = static_cast<ScenarioClass>(std::ranges::find(letters, letter) - letters.begin());
   answer.causes.clear();
   for (nlohmann::json const& cause : json.at("causes"))
-    answer.causes.push_back(
-        {cause.at("name"), cause.at("strength"), cause.at("from"), cause.at("label"), cause.at("other_form")});
+    answer.causes.push_back({cause.at("name"), cause.at("strength"), cause.at("from"), cause.at("label"),
+                             cause.value("other_form", false)});
   json.at("id").get_to(answer.id);
   json.at("text").get_to(answer.text);
   answer.visibilities = numbers(json.at("visibilities"));
