@@ -15,13 +15,6 @@
 namespace layerloop::validation {
 namespace {
 
-/// The observations that the model has an answer for.
-Study answered(Study study, Prediction const& prediction) {
-  std::erase_if(study.observations,
-                [&](Observation const& o) { return !std::isfinite(prediction.value[index(o.observable)]); });
-  return study;
-}
-
 /// Change of every observation's prediction by one prior standard deviation of each calibration number. Where the model
 /// has no answer one standard deviation off, the number counts nothing.
 Eigen::MatrixXd responses(Study const& study, Model& model, ModelPoint const& base, Eigen::VectorXd const& at_base) {

@@ -18,20 +18,15 @@
 namespace layerloop::validation {
 namespace {
 
-bool is_answered(Observation const& seen, Prediction const& prediction) {
-  return std::isfinite(prediction.value[index(seen.observable)]);
-}
-
-/// The study without the observations that the model has no answer for, and what was left out in words.
-Study answered(Study study, Prediction const& prediction) {
-  auto const silent = [&](Observation const& seen) { return !is_answered(seen, prediction); };
-  auto const count = std::ranges::count_if(study.observations, silent);
+/// What the model has an answer for, and what was left out in words.
+Study judged(Study const& given, Prediction const& prediction) {
+  Study study = answered(given, prediction);
+  auto const count = given.observations.size() - study.observations.size();
   if (count == 0) return study;
   study.limits.push_back(
       fmt::format("{} of {} readings have no prediction (nothing melts there, or a guard stopped the "
                   "run) and are left out",
-                  count, study.observations.size()));
-  std::erase_if(study.observations, silent);
+                  count, given.observations.size()));
   if (study.observations.empty())
     throw PhysicsError(
         "the model has no answer for any of the measurements (nothing melts, or every run was stopped by "
@@ -153,7 +148,7 @@ Diagnosis diagnose(Study const& given, Model& model, std::vector<Candidate> cons
   ModelPoint const prior{.calibration = prior_means(given),
                          .strengths = Eigen::VectorXd::Zero(index(candidates.size()))};
   Prediction const believed = model.predict(prior);
-  Study const study = answered(given, believed);
+  Study const study = judged(given, believed);
 
   // Calibrate; relative uncertainties rest on the calibrated model.
   ResidualFrame const first_frame(study, believed);

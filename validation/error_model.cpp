@@ -25,6 +25,15 @@ Eigen::VectorXd prior_means(Study const& study) {
   return means;
 }
 
+bool is_answered(Observation const& seen, Prediction const& prediction) {
+  return std::isfinite(prediction.value[index(seen.observable)]);
+}
+
+Study answered(Study study, Prediction const& prediction) {
+  std::erase_if(study.observations, [&](Observation const& seen) { return !is_answered(seen, prediction); });
+  return study;
+}
+
 Eigen::MatrixXd covariance(Study const& study, Prediction const& prediction) {
   Eigen::Index const n = index(study.observations.size());
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(n, n);

@@ -11,6 +11,10 @@ Eigen::VectorXd at_observations(Study const& study, Eigen::VectorXd const& by_ob
 Eigen::VectorXd measured_values(Study const& study);
 /// Of the calibration numbers: the values that were believed beforehand.
 Eigen::VectorXd prior_means(Study const& study);
+/// Whether the model has an answer for an observation; none where nothing melts, or a guard stopped it.
+bool is_answered(Observation const& seen, Prediction const& prediction);
+/// The study without the observations that it has none for.
+Study answered(Study study, Prediction const& prediction);
 
 /// Covariance of measured minus predicted [SI]: readings independent, a sys_group fully correlated (its relative part
 /// on the model's value, so that multiplicative errors do not drag a fit low: d'Agostini, Nucl. Instrum. Methods A 346

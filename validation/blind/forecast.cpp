@@ -1,6 +1,5 @@
 #include "validation/blind/forecast.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "validation/error_model.hpp"
@@ -52,14 +51,6 @@ Eigen::VectorXd smooth_correction(Study const& training, Study const& holdout, E
   return correction;
 }
 
-/// The study without the observations of which some number is unknown (a guard stopped the model, nothing melts).
-Study known(Study study, std::vector<Eigen::VectorXd> const& by_observable) {
-  std::erase_if(study.observations, [&](Observation const& row) {
-    return std::ranges::any_of(by_observable, [&](auto const& v) { return !std::isfinite(v[index(row.observable)]); });
-  });
-  return study;
-}
-
 }  // namespace
 
 Forecast forecast_of(World const& world, Study const& training, Study const& holdout,
@@ -70,7 +61,7 @@ Forecast forecast_of(World const& world, Study const& training, Study const& hol
   ModelPoint const before{vector_of(judgement.calibrated), Eigen::VectorXd::Zero(index(candidates.size())), 1},
       after{vector_of(judgement.final_calibration), vector_of(judgement.final_strengths), 1};
   Prediction const first = model->predict(before), second = model->predict(after), fitted = trained->predict(before);
-  Study const seen = known(training, {fitted.value}), unseen = known(holdout, {first.value, second.value});
+  Study const seen = answered(training, fitted), unseen = answered(answered(holdout, first), second);
   if (seen.observations.empty() || unseen.observations.empty()) return {NAN, NAN, NAN, NAN};
   Eigen::VectorXd truths(index(unseen.observations.size()));
   for (Eigen::Index i = 0; i < truths.size(); ++i)

@@ -10,8 +10,7 @@ Separation::Separation(Study const& study, Model& model, std::vector<Candidate> 
     : study_(study), model_(model), candidates_(candidates), effort_(effort) {
   base_point_ = {calibration, Eigen::VectorXd::Zero(index(candidates.size()))};
   base_ = model.predict(base_point_);
-  std::erase_if(study_.observations,
-                [&](Observation const& row) { return !std::isfinite(base_.value[index(row.observable)]); });
+  study_ = answered(study, base_);
   whiten_.emplace(covariance(study_, base_));
   // What is known of the calibration beforehand counts as one more reading each.
   auto const rows = index(study_.observations.size()), numbers = index(study.calibration.size());
