@@ -122,7 +122,7 @@ std::vector<CaseKey> melt_rows() {
       {"melt", "bed", choice<melt, &M::bed>({"automatic", "plate", "spread", "file"}), D::none, {}, Need::never, "\"automatic\"",
        "What the verb melt melts: a bare plate, a layer that the recoater spreads on it first, or the file of --bed. `automatic`: `spread` where there is a table [machine], else `plate`."},
       {"melt", "two_grids", at<melt, &M::two_grids>, D::none, {}, Need::never, "false",
-       "Whether the exposure is repeated with cells 1.5 times as large, for the discretisation error of the pool."},
+       "Whether the exposure is repeated with cells 1.5 times as large (of a spread layer: with the nearest such that divide its width and length), for the discretisation error of pool and absorptivity."},
   };
 }
 // clang-format on

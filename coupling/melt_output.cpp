@@ -124,18 +124,20 @@ json grid(MeltStudy const& study) {
              {"depth", study.estimate.pool.depth},
              {"length", study.estimate.pool.length}}},
            {"largest_edge_temperature_rise", number(edge_temperature_rise(study))}};
-  if (!study.coarse) return all;
-  all["second_grid"] = {{"cell_size", coarsening * g.cell},
-                        {"width", study.coarse->width},
-                        {"depth", study.coarse->depth},
-                        {"length", study.coarse->length},
+  if (!study.second_grid) return all;
+  PoolSize const& pool = study.second_grid->pool;
+  all["second_grid"] = {{"cell_size", study.second_grid->cell_size},
+                        {"width", pool.width},
+                        {"depth", pool.depth},
+                        {"length", pool.length},
+                        {"absorptivity", study.second_grid->absorptivity},
                         {"order", 2},
                         {"order_is", "assumed"}};
   return all;
 }
 
 json definitions(MeltStudy const& study) {
-  bool const two = study.coarse.has_value();
+  bool const two = study.second_grid.has_value();
   std::string const isotherm = study.placed.heat.pool_isotherm;
   return {
       {"pool.width",
@@ -146,9 +148,10 @@ json definitions(MeltStudy const& study) {
       {"pool.length",
        "extent along the track of what is above the isotherm at one instant, mean over instants about mid-track"},
       {"pool.area", "area of the section inside the isotherm, molten powder included"},
-      {"pool.*_u_num", two ? "difference to the grid with cells 1.5 times as large over 1.5^2 - 1 (Richardson, order 2 "
-                             "assumed), combined with the scatter between sections"
-                           : "half a cell in each direction, combined with the scatter between sections"},
+      {"pool.*_u_num",
+       two ? "difference to the second grid, whose cells are r times as large, over r^2 - 1 (Richardson, order "
+             "2 assumed), combined with the scatter between sections"
+           : "half a cell in each direction, combined with the scatter between sections"},
       {"pool.bead_height",
        "highest metal over the original surface within the pool's width after the melt has settled, mean over the "
        "sections; _sd: from section to section"},
@@ -245,7 +248,7 @@ json melt_summary(MeltStudy const& study) {
            {"cooling_rate", study.cooling ? json(study.cooling->value) : json(nullptr)},
            {"cooling_rate_u_num", study.cooling ? json(study.cooling->u_num) : json(nullptr)},
            {"absorptivity", light.absorptivity},
-           {"absorptivity_u_num", light.standard_error},
+           {"absorptivity_u_num", std::hypot(light.standard_error, study.absorptivity_u_mesh)},
            {"standard_error", light.standard_error},
            {"normalised_enthalpy", normalised_enthalpy(study.placed, light.absorptivity)},
            {"spot_radius", study.placed.laser.spot_radius()},

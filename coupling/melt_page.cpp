@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "coupling/melt_output.hpp"
@@ -36,8 +37,11 @@ std::string cards(MeltStudy const& study) {
          card("Width", micrometres(pool.width, u.width), fmt::format("at the {}, across the track", isotherm)) +
          card("Depth", micrometres(pool.depth, u.depth), "below the original surface") +
          card("Length", micrometres(pool.length, u.length), "along the track, at one instant") +
-         card("Absorptivity", with_uncertainty(light.absorptivity, light.standard_error),
-              given ? "given in the case" : "&plusmn; standard error of the rays") +
+         card("Absorptivity",
+              with_uncertainty(light.absorptivity, std::hypot(light.standard_error, study.absorptivity_u_mesh)),
+              given               ? "given in the case"
+              : study.second_grid ? "&plusmn; error of rays and cells"
+                                  : "&plusmn; standard error of the rays") +
          card("Cooling rate",
               study.cooling ? with_uncertainty(1e-6 * study.cooling->value, 1e-6 * study.cooling->u_num) + " K/&micro;s"
                             : "&ndash;",

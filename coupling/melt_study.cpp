@@ -13,7 +13,9 @@
 #include "coupling/material_mass.hpp"
 #include "coupling/melt_bed.hpp"
 #include "coupling/melt_output.hpp"
+#include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
+#include "coupling/solid_field.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/surface_level.hpp"
 #include "coupling/transfer.hpp"
@@ -47,12 +49,13 @@ Exposed expose(BuildState& build, Case const& placed, std::int32_t layer, Commun
 
 /// Error of the finer grid by Richardson's extrapolation, the order taken to be 2, in the place of half a cell; the
 /// scatter between sections stays.
-PoolSize error_of_two_grids(MeltRecord const& fine, PoolSize const& coarse) {
+PoolSize error_of_two_grids(MeltRecord const& fine, SecondGrid const& coarse) {
+  double const ratio = coarse.cell_size / fine.grid.cell;
   PoolSize error;
   for (auto member : {&PoolSize::width, &PoolSize::depth, &PoolSize::length}) {
     double const half_cell = 0.5 * fine.grid.cell, u = fine.pool_u_num.*member;
     double const scatter = std::sqrt(std::max(0.0, u * u - half_cell * half_cell));
-    error.*member = std::hypot((coarse.*member - fine.pool.*member) / (coarsening * coarsening - 1), scatter);
+    error.*member = std::hypot((coarse.pool.*member - fine.pool.*member) / (ratio * ratio - 1), scatter);
   }
   return error;
 }
@@ -109,23 +112,42 @@ void solidify(MeltStudy& study, LayerRecord& layer, std::vector<double> const& m
   audit(build, study.placed);
 }
 
-/// The pool in coarser cells on a plate of the same size.
-PoolSize pool_on_second_grid(MeltStudy& study, MeltOptions const& options, Communicator const& comm,
-                             thermal::Report report) {
-  Case coarse = with_cells(study.placed, coarsening * study.placed.heat.cell_size);
-  BuildState plate = build_to_melt(coarse, options, comm);
-  PoolSize const pool = expose(plate, coarse, study.layer, comm, report).melted.heat.melt.pool;
-  WallTime& wall_time = study.build.record.wall_time;
-  wall_time.heat += plate.record.wall_time.heat;
-  wall_time.rays += plate.record.wall_time.rays;
-  return pool;
+void refuse_what_cannot_be(Case const& checked) {
+  if (checked.melt.two_grids && !second_cell(checked))
+    throw InputError(
+        fmt::format("melt.two_grids = true (no cells 1.2 to 2.1 times as large as heat.cell_size = {:.4g} um divide "
+                    "machine.width and machine.deposition_length) choose lengths with more common divisors",
+                    1e6 * checked.heat.cell_size));
 }
 
-void refuse_what_cannot_be(Case const& checked) {
-  if (checked.melt.two_grids && checked.has_machine())
-    throw InputError(
-        "melt.two_grids = true (the cells of a spread layer must divide machine.width) melt the bed that was spread by "
-        "--bed, or repeat with another heat.cell_size");
+/// The same grains on the same plate in larger cells. \pre nothing was melted yet
+SecondGrid on_second_grid(MeltStudy& study, BuildState before, MeltOptions const& options, Communicator const& comm,
+                          thermal::Report report) {
+  Case coarse = study.placed;
+  double const cell = *second_cell(coarse);
+  if (coarse.has_machine()) {
+    coarse.heat.cell_size = cell;
+    double const sunk = before.solid.grid.origin.z();  // as the platform did
+    before.solid = empty_solid(coarse);
+    lower(before.solid, -sunk);
+    before.substrate = mesh_solid(before.solid, coarse);
+  } else {
+    coarse = with_cells(coarse, cell);
+    before = build_to_melt(coarse, options, comm);
+  }
+  before.record = {};
+  MeltedLayer const melted = expose(before, coarse, study.layer, comm, report).melted;
+  WallTime& wall_time = study.build.record.wall_time;
+  wall_time.heat += before.record.wall_time.heat;
+  wall_time.rays += before.record.wall_time.rays;
+  return {cell, melted.heat.melt.pool, melted.exposure.mean.absorptivity};
+}
+
+/// What the finer grid lacks to vanishing cells if the error goes as the cell, as it does for light on a surface made
+/// of them (Richardson).
+double error_of_absorptivity(MeltStudy const& study) {
+  double const ratio = study.second_grid->cell_size / study.placed.heat.cell_size;
+  return std::abs(study.second_grid->absorptivity - study.melted.exposure.mean.absorptivity) / (ratio - 1);
 }
 
 }  // namespace
@@ -171,6 +193,19 @@ double depression_of(MeltStudy const& study) {
   return deepest;
 }
 
+std::optional<double> second_cell(Case const& checked) {
+  constexpr double wanted = 1.5, least = 1.2, most = 2.1;
+  double const cell = checked.heat.cell_size, width = checked.machine.width, length = checked.machine.deposition_length;
+  if (!checked.has_machine()) return wanted * cell;
+  std::optional<double> best;
+  for (double across = std::floor(width / (least * cell) + 1e-6); across >= width / (most * cell); --across) {
+    double const other = width / across, along = length / other;
+    bool const fits = std::abs(along - std::round(along)) < 1e-6 * along;
+    if (fits && (!best || std::abs(other / cell - wanted) < std::abs(*best / cell - wanted))) best = other;
+  }
+  return best;
+}
+
 MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator const& comm) {
   refuse_what_cannot_be(checked);
   MeltStudy study;
@@ -197,8 +232,9 @@ MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator
     MeltRecord const& melt = study.melted.heat.melt;
     study.u_num = melt.pool_u_num;
     if (checked.melt.two_grids) {
-      study.coarse = pool_on_second_grid(study, options, comm, report);
-      study.u_num = error_of_two_grids(melt, *study.coarse);
+      study.second_grid = on_second_grid(study, study.build, options, comm, report);
+      study.u_num = error_of_two_grids(melt, *study.second_grid);
+      study.absorptivity_u_mesh = error_of_absorptivity(study);
     }
     LayerRecord layer;
     layer.layer = 1;  // the ledger of the melting is of this layer alone

@@ -49,6 +49,13 @@ struct CoolingRate {
 /// Nothing when the probe did not melt, or the exposure ended before it was cold.
 std::optional<CoolingRate> cooling_rate(ProbeHistory const& probe, double solidus);
 
+/// What the exposure repeated in larger cells came to.
+struct SecondGrid {
+  double cell_size = 0;  ///< [m]
+  PoolSize pool;
+  double absorptivity = 0;
+};
+
 /// One exposure and what explains it.
 struct MeltStudy {
   Case placed;  ///< with plate and cells as chosen
@@ -57,8 +64,9 @@ struct MeltStudy {
   std::int32_t layer = 1;
   MeltedLayer melted;
   CellContent cells;
-  std::optional<PoolSize> coarse;  ///< pool in cells 1.5 times as large, with melt.two_grids
-  PoolSize u_num;                  ///< of the pool
+  std::optional<SecondGrid> second_grid;  ///< with melt.two_grids
+  PoolSize u_num;                         ///< of the pool
+  double absorptivity_u_mesh = 0;         ///< error of the absorptivity from the cells, if there is a second grid
   Regime regime = Regime::none;
   std::optional<CoolingRate> cooling;
   std::optional<Fusion> fusion;     ///< of a patch
@@ -69,12 +77,13 @@ struct MeltStudy {
 /// reached below the surface that the powder was spread on.
 double depression_of(MeltStudy const& study);
 
+/// Cells of the second grid: 1.5 times as large, in a spread layer the nearest to that (1.2 to 2.1) that divide its
+/// width and length; nothing: there are none. On a plate that is still to be chosen, its cell_size may be 0.
+std::optional<double> second_cell(Case const& checked);
+
 /// Exposes a plate or bed to the scan of the case and writes summary.json, sections.csv, tracks.csv, probe.csv,
 /// heat_NNNN.h5, case_resolved.toml, log.jsonl and report.html; with powder also bed_NNNN.h5 and solid_NNNN.stl. \note
 /// Collective \throws InputError, FileError, PhysicsError, StoppedBySignal
 MeltStudy run_melt(Case const& checked, MeltOptions const& options, Communicator const& comm);
-
-/// Cells of the second grid over those of the first.
-inline constexpr double coarsening = 1.5;
 
 }  // namespace layerloop::coupling

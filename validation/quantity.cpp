@@ -84,7 +84,7 @@ auto pool_size(double PoolSize::*figure, double TrackSection::*local = nullptr) 
 
 Reading absorptivity_of_melt(MeltStudy const& study, Spot const&) {
   AbsorbedPower const& light = study.melted.exposure.mean;
-  return {light.absorptivity, 0, light.standard_error};
+  return {light.absorptivity, study.absorptivity_u_mesh, light.standard_error};
 }
 
 Reading absorptivity_of_bed(coupling::AbsorptionStudy const& study) {

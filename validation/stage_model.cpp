@@ -143,9 +143,9 @@ class StageModel final : public Model {
     return cases_.make(settings, job.verb);
   }
 
-  /// \param second_grid  for the discretisation error of the pool; the figures are the same either way
+  /// \param second_grid  for the discretisation error of pool and absorptivity; the figures are the same either way
   RunReadings run(Job const& job, Case checked, bool second_grid) {
-    checked.melt.two_grids = job.on_plate && second_grid;
+    checked.melt.two_grids = second_grid && job.verb == Verb::melt && coupling::second_cell(checked);
     try {
       StageRun const done = run_stage(job.verb, checked, job.places, cache_, comm_);
       computed_ += done.computed;
@@ -203,14 +203,21 @@ class StageModel final : public Model {
     if (std::ranges::find(notes_, words) == notes_.end()) notes_.push_back(words);
   }
 
-  /// Of every observable on a bare plate, from two grids at the base point; not a number: it has none there.
+  /// Of every observable that light and heat give, from two grids at the base point, over beds the root mean square;
+  /// not a number: it has none there.
   void find_error_of_mesh() {
     error_of_mesh_.assign(study_.observables.size(), std::nan(""));
-    if (std::ranges::none_of(jobs_, &Job::on_plate)) return;
+    auto const melts = [](Job const& job) { return job.verb == Verb::melt; };
+    if (std::ranges::none_of(jobs_, melts)) return;
     Samples const base = sample(base_point());
     for (Job const& job : jobs_) {
-      for (std::size_t const i : job.observables)
-        if (job.on_plate && std::isfinite(base[i].front().value)) error_of_mesh_[i] = base[i].front().u_numerical;
+      if (!melts(job)) continue;
+      for (std::size_t const i : job.observables) {
+        double squares = 0, count = 0;
+        for (Reading const& bed : base[i])
+          if (std::isfinite(bed.value)) squares += bed.u_numerical * bed.u_numerical, ++count;
+        if (count > 0) error_of_mesh_[i] = std::sqrt(squares / count);
+      }
     }
   }
 

@@ -87,10 +87,89 @@ TEST(Melt, PoolDoesNotDependOnTheDirectionOfTheTrack) {
 
 TEST(Melt, SecondGridTellsTheErrorOfTheFirst) {
   MeltStudy const study = study_of({"melt.two_grids=true", "heat.cell_size=\"7 um\""});
-  ASSERT_TRUE(study.coarse);
+  ASSERT_TRUE(study.second_grid);
   PoolSize const pool = study.melted.heat.melt.pool;
-  EXPECT_NEAR(study.u_num.depth, std::abs(study.coarse->depth - pool.depth) / 1.25, 0.1e-6) << "sections hardly differ";
+  EXPECT_NEAR(study.u_num.depth, std::abs(study.second_grid->pool.depth - pool.depth) / 1.25, 0.1e-6)
+      << "sections hardly differ";
   EXPECT_LT(std::abs(pool.depth - 41.1274e-6), 3 * study.u_num.depth + 0.5e-6);
+}
+
+/// One layer of some fifty soft grains, and a track on it.
+constexpr char const* layer = R"(
+[powder]
+material = "316L"
+basis = "number"
+diameters = ["26 um"]
+fractions = [1]
+particles = 90
+[contact]
+youngs_modulus = "4 MPa"
+poisson_ratio = 0.3
+restitution = 0.6
+sliding_friction = 0.5
+rolling_friction = 0
+cohesion = "none"
+[machine]
+layer_thickness = "55 um"
+recoating_speed = "40 mm/s"
+accumulation_length = "130 um"
+accumulation_depth = "50 um"
+gap_length = "30 um"
+deposition_length = "168 um"
+width = "120 um"
+blade_width = "50 um"
+edge_radius = "5 um"
+[laser]
+power = "70 W"
+wavelength = "1070 nm"
+spot_diameter = "60 um"
+spot_definition = "1/e2"
+[optics]
+rays = 1000
+[scan]
+kind = "track"
+scan_speed = "800 mm/s"
+track_length = "90 um"
+[heat]
+cell_size = "8 um"
+substrate_depth = "60 um"
+[run]
+layers = 1
+pictures = false
+[effects.evaporation]
+enabled = true
+)";
+
+/// On a spread layer the second grid is the first that divides width and length: 10 x 14 cells for 15 x 21. Spread anew
+/// in such cells, which is another way through the program, the layer melts the same.
+TEST(Melt, SecondGridOfASpreadLayerIsTheLayerInLargerCells) {
+  fs::path const folder = fs::temp_directory_path() / ("layerloop_two_grids_" + std::to_string(::getpid()));
+  auto const melted = [&](char const* name, std::vector<std::string> const& changes) {
+    Case const checked = case_of_text(layer, "layer.toml", changes, Process::exposing);
+    return run_melt(checked, {.folder = folder / name, .bed = {}, .quiet = true}, Communicator());
+  };
+  MeltStudy const fine = melted("fine", {"melt.two_grids=true"}),
+                  coarse = melted("coarse", {"heat.cell_size=\"12 um\""});
+  ASSERT_TRUE(fine.second_grid);
+  double const absorptivity = fine.melted.exposure.mean.absorptivity,
+               in_large_cells = coarse.melted.exposure.mean.absorptivity;
+  std::printf("absorptivity %.4f in 8 um, %.4f in 12 um\n", absorptivity, in_large_cells);
+  EXPECT_NEAR(fine.second_grid->cell_size, 12e-6, 1e-12);
+  EXPECT_NEAR(fine.second_grid->absorptivity, in_large_cells, 1e-6);
+  EXPECT_NEAR(fine.second_grid->pool.width, coarse.melted.heat.melt.pool.width, 1e-9);
+  EXPECT_NEAR(fine.absorptivity_u_mesh, std::abs(in_large_cells - absorptivity) / 0.5, 1e-6);
+  EXPECT_GT(fine.absorptivity_u_mesh, 3 * fine.melted.exposure.mean.standard_error) << "the rays would tell";
+  MeltStudy const cold = melted("cold", {"melt.two_grids=true", "laser.power=2"});
+  EXPECT_LT(cold.absorptivity_u_mesh, 2 * cold.melted.exposure.mean.standard_error) << "grains that do not melt are spheres, whatever the cells";
+  fs::remove_all(folder);
+}
+
+/// The cells of a spread layer divide it.
+TEST(Melt, NoSecondGridWhereNoCellsDivideTheLayer) {
+  std::vector<std::string> const changes{"heat.cell_size=\"10 um\"", "machine.width=\"130 um\"",
+                                         "machine.deposition_length=\"170 um\""};
+  Case const checked = case_of_text(layer, "layer.toml", changes, Process::exposing);
+  EXPECT_FALSE(second_cell(checked));
 }
 
 /// Two tracks whose pools do not meet leave between them what their widths leave; those that meet leave nothing.
