@@ -16,6 +16,7 @@ struct Candidate {
   bool two_sided = false;                    ///< the strength may be negative
   std::string sentence = {};                 ///< what it is, in words
   std::vector<std::string> quantities = {};  ///< of an instrument: what it reads; empty: all
+  bool specified = false;  ///< prior_scale is the uncertainty of a gauge or a setting, not an order of magnitude
 };
 
 }  // namespace layerloop::validation

@@ -266,8 +266,15 @@ std::vector<Candidate> input_errors(Study const& study, Case const& base, Reach 
        }) {
     bool const calibrated = std::ranges::any_of(study.calibration, [&](auto const& p) { return p.key == input.key; });
     if (input.acts && !calibrated)
-      all.push_back({input.key, input.key[0] == 's' ? EffectStage::heat : EffectStage::laser, EffectClass::calibration,
-                     input.prior_scale, 0.5, true, input.sentence});
+      all.push_back({input.key,
+                     input.key[0] == 's' ? EffectStage::heat : EffectStage::laser,
+                     EffectClass::calibration,
+                     input.prior_scale,
+                     0.5,
+                     true,
+                     input.sentence,
+                     {},
+                     true});
   }
   return all;
 }
@@ -314,7 +321,8 @@ std::vector<Candidate> instruments(Study const& study) {
                      10,
                      true,
                      quantity + " is read too high by strength times " + size + ".",
-                     {quantity}});
+                     {quantity},
+                     true});
     }
   }
   return all;

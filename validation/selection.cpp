@@ -57,12 +57,12 @@ Fit on_the_line(Workbench const& bench, Fit wider) {
   return wider;
 }
 
-/// What a candidate reaches, with what its strength is beforehand: that of an instrument is known to be about its prior
-/// scale (normal), that of anything else to its order of magnitude at best (Cauchy).
+/// What a candidate reaches, with what its strength is beforehand: an error of a gauge or a setting is about its prior
+/// scale (normal), anything else is known to its order of magnitude at best (Cauchy).
 double standing(Workbench const& bench, Trial const& trial) {
   Candidate const& candidate = bench.candidates[trial.candidate];
   double const s = trial.fit.point.strengths[index(trial.candidate)] / candidate.prior_scale;
-  return trial.fit.objective + (candidate.kind == EffectClass::instrument ? s * s : 2 * std::log1p(s * s));
+  return trial.fit.objective + (candidate.specified ? s * s : 2 * std::log1p(s * s));
 }
 
 void sort_by_standing(Workbench const& bench, std::vector<Trial>& trials) {

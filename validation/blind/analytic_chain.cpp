@@ -167,10 +167,10 @@ std::vector<Candidate> analytic_candidates() {
   std::vector<Candidate> candidates;
   for (KnownEffect const& known : known_effects()) candidates.push_back(known.candidate);
   for (auto const& [key, stage] : {std::pair{"laser.power", laser}, std::pair{"scan.scan_speed", laser}})
-    candidates.push_back({std::string("error of ") + key, stage, calibration, 0.05, 0.4, true});
+    candidates.push_back({std::string("error of ") + key, stage, calibration, 0.05, 0.4, true, "", {}, true});
   for (KnownReading const& known : known_readings()) {
     candidates.push_back(
-        {"offset of " + known.quantity, known.stage, instrument, 1, known.largest, true, "", {known.quantity}});
+        {"offset of " + known.quantity, known.stage, instrument, 1, known.largest, true, "", {known.quantity}, true});
     candidates.push_back({"scale of " + known.quantity,
                           known.stage,
                           instrument,
@@ -178,7 +178,8 @@ std::vector<Candidate> analytic_candidates() {
                           0.025 * known.largest,
                           true,
                           "",
-                          {known.quantity}});
+                          {known.quantity},
+                          true});
   }
   return candidates;
 }

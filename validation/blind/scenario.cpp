@@ -171,7 +171,11 @@ std::string told(Answer const& answer) {
   return text;
 }
 
-void hide_one_effect(Draw& draw) { draw.hide_candidate(draw.one_of(draw.hidden_effects()), Visible::faintly_too); }
+/// Where a scenario is dear, none is spent on what can hardly be seen.
+void hide_one_effect(Draw& draw) {
+  Visible const how = draw.world().effort() == Effort::dear ? Visible::clearly : Visible::faintly_too;
+  draw.hide_candidate(draw.one_of(draw.hidden_effects()), how);
+}
 
 void hide_withheld_effect(Draw& draw) {
   draw.hide_candidate(draw.one_of(draw.hidden_effects()), Visible::clearly);

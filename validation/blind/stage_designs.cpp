@@ -229,7 +229,7 @@ StageDesign layer() {
           .beds = 2,
           .measured_beds = 3,
           .true_resolution = {{"contact.time_step_fraction", 0.12}, {"heat.cell_size", 6e-6}},
-          .classes = {one_effect, nothing, one_effect, real_life},
+          .classes = {one_effect, nothing, one_effect, real_life, one_effect, one_effect},
           .hidden_effects = {"cohesion", "surface_oxide", "rolling_resistance", "diffuse_scattering"},
           .biased_inputs = {"laser.power", "scan.scan_speed", "laser.spot_diameter"},
           .foreign_causes = {{"dirty_window", 4, {"machine"}, {"pool.", "everything"}}},
