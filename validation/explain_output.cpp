@@ -48,13 +48,21 @@ json patterns(std::vector<PatternFinding> const& found) {
   return all;
 }
 
+json settings_of(Condition const& condition) {
+  json all = json::object();
+  for (auto const& [key, value] : condition.inputs) all[key] = value;
+  for (auto const& [key, word] : condition.words) all[key] = word;
+  for (auto const& [key, label] : condition.labels) all[key] = label;
+  return all;
+}
+
 json proposal(NextExperiment const& next) {
-  json conditions = json::object();
-  for (auto const& [key, value] : next.condition.inputs) conditions[key] = value;
-  for (auto const& [key, word] : next.condition.words) conditions[key] = word;
-  for (auto const& [key, label] : next.condition.labels) conditions[key] = label;
-  return {{"conditions", conditions},
+  json also = json::array();
+  for (Condition const& condition : next.also_at) also.push_back(settings_of(condition));
+  return {{"conditions", settings_of(next.condition)},
+          {"also_at", also},
           {"quantity", next.quantity},
+          {"together", next.together},
           {"replicates", next.replicates},
           {"separates", next.separates},
           {"separation", number(next.separation)},
@@ -111,6 +119,13 @@ std::string wrapped(std::string const& text, std::string const& indent, std::siz
   return lines + line + '\n';
 }
 
+std::string settings_in_words(Condition const& condition) {
+  std::vector<std::string> words;
+  for (auto const& [key, value] : condition.inputs) words.push_back(value_in_words(key, value));
+  for (auto const& [key, word] : condition.words) words.push_back(key + " = " + word);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 std::string weight(double z) { return std::abs(z) < 6 ? "weak" : std::abs(z) < 10 ? "fair" : "strong"; }
 
 std::string effect_lines(Diagnosis const& found) {
@@ -128,13 +143,24 @@ std::string effect_lines(Diagnosis const& found) {
 
 }  // namespace
 
+std::string measured_in_words(NextExperiment const& next) {
+  std::string words = next.quantity;
+  for (std::size_t k = 0; k < next.together.size(); ++k)
+    words += (k + 1 < next.together.size() ? ", " : " and ") + next.together[k];
+  return words;
+}
+
+std::string places_in_words(NextExperiment const& next) {
+  std::string words = settings_in_words(next.condition);
+  for (Condition const& condition : next.also_at) words += " and at " + settings_in_words(condition);
+  return words;
+}
+
 std::string proposal_in_words(NextExperiment const& next) {
-  std::string where;
-  for (auto const& [key, value] : next.condition.inputs)
-    where += (where.empty() ? "" : ", ") + value_in_words(key, value);
-  for (auto const& [key, word] : next.condition.words) where += (where.empty() ? "" : ", ") + key + " = " + word;
-  return fmt::format("{} at {}: {} reading{} tell{} {} apart", next.quantity, where, next.replicates,
-                     next.replicates == 1 ? "" : "s", next.replicates == 1 ? "s" : "",
+  bool const one = next.replicates == 1 && next.together.empty() && next.also_at.empty();
+  return fmt::format("{} at {}: {} reading{}{} tell{} {} apart", measured_in_words(next), places_in_words(next),
+                     next.replicates, next.replicates == 1 ? "" : "s",
+                     next.together.empty() && next.also_at.empty() ? "" : " of each", one ? "s" : "",
                      fmt::join(next.separates, " and "));
 }
 

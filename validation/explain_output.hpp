@@ -10,6 +10,10 @@ namespace layerloop::validation {
 
 /// "pool.depth at laser.power = 200 W: 4 readings tell keyhole and evaporation apart"
 std::string proposal_in_words(NextExperiment const& next);
+/// "pool.width and pool.depth".
+std::string measured_in_words(NextExperiment const& next);
+/// "laser.power = 200 W and at laser.power = 90 W".
+std::string places_in_words(NextExperiment const& next);
 
 /// The answer on one screen: the verdict first, what to measure next last.
 std::string answer_in_words(Explanation const& explained);

@@ -8,6 +8,7 @@
 
 #include "core/write_file.hpp"
 #include "validation/display.hpp"
+#include "validation/explain_output.hpp"
 #include "validation/quantity.hpp"
 
 namespace layerloop::validation {
@@ -69,13 +70,19 @@ std::string patterns_csv(Diagnosis const& found) {
   return text;
 }
 
+std::string settings_of(Condition const& condition) {
+  std::string text;
+  for (auto const& [key, value] : condition.inputs) text += fmt::format("{}={:.6g} ", key, value);
+  return text;
+}
+
 std::string next_csv(Explanation const& explained) {
   std::string text = "conditions [SI],quantity,replicates,separation,difference [SI],u [SI],separates,simulated\n";
   for (NextExperiment const& next : explained.next) {
-    std::string where;
-    for (auto const& [key, value] : next.condition.inputs) where += fmt::format("{}={:.6g} ", key, value);
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", text_cell(where), next.quantity, next.replicates,
-                        cell(next.separation), cell(next.difference), cell(next.u),
+    std::string where = settings_of(next.condition);
+    for (Condition const& condition : next.also_at) where += "and " + settings_of(condition);
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", text_cell(where), text_cell(measured_in_words(next)),
+                        next.replicates, cell(next.separation), cell(next.difference), cell(next.u),
                         text_cell(fmt::format("{}", fmt::join(next.separates, " "))), next.simulated ? 1 : 0);
   }
   return text;

@@ -11,10 +11,11 @@ namespace layerloop::validation {
 using ModelOf = std::function<std::unique_ptr<Model>(Study const&)>;
 
 /// What to measure next, best first. Rivals of a GROUP: where their predictions differ most once the worse one has been
-/// refitted to the new reading too (T-optimality; Atkinson & Fedorov, Biometrika 62 (1975) 57), over a grid of
-/// conditions between those of the study and every quantity that its runs give; Gaussian processes screen, true runs
-/// judge the best three. UNKNOWN, PARTIAL and CONFOUNDED: the extremes of what is left over, again. Otherwise nothing.
-/// \param model  of the explanation's study
+/// refitted to the new readings too (T-optimality; Atkinson & Fedorov, Biometrika 62 (1975) 57), over a grid of
+/// conditions between those of the study, of every quantity that its runs give, and of all together that the study
+/// reads; Gaussian processes screen, true runs judge the best three places and the corners of the range; where no place
+/// will do alone, up to three together. UNKNOWN, PARTIAL and CONFOUNDED: the extremes of what is left over, again.
+/// Otherwise nothing. \param model  of the explanation's study
 std::vector<NextExperiment> next_experiments(Explanation const& explained, Model& model, ModelOf const& model_of);
 
 /// The grid of conditions that is searched: those of the study, and places between their extremes.

@@ -101,14 +101,13 @@ std::map<std::string, RivalPredictions> predict_rivals(Study const& conditions_o
   return all;
 }
 
-double separation(Eigen::VectorXd const& difference, Eigen::MatrixXd const& derivatives, double new_difference,
-                  Eigen::RowVectorXd const& new_derivatives) {
-  Eigen::Index const n = difference.size();
-  Eigen::VectorXd d(n + 1);
+double separation(Eigen::VectorXd const& difference, Eigen::MatrixXd const& derivatives,
+                  Eigen::VectorXd const& new_difference, Eigen::MatrixXd const& new_derivatives) {
+  Eigen::VectorXd d(difference.size() + new_difference.size());
   d << difference, new_difference;
-  Eigen::MatrixXd j(n + 1, derivatives.cols());
+  Eigen::MatrixXd j(d.size(), derivatives.cols());
   j << derivatives, new_derivatives;
-  return Projection(n + 1, j)(d).squaredNorm();
+  return Projection(d.size(), j)(d).squaredNorm();
 }
 
 }  // namespace layerloop::validation

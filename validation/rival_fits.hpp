@@ -28,9 +28,9 @@ std::map<std::string, RivalPredictions> predict_rivals(Study const& conditions_o
                                                        RivalFits const& rivals, ModelOf const& model_of,
                                                        bool sensitive);
 
-/// Squared distance that stays between two rivals when one of them is refitted to the other's predictions, with a new
-/// reading among the data. All in standard deviations. \param row  difference of the new reading, then its derivatives
-double separation(Eigen::VectorXd const& difference, Eigen::MatrixXd const& derivatives, double new_difference,
-                  Eigen::RowVectorXd const& new_derivatives);
+/// Squared distance that stays between two rivals when one of them is refitted to the other's predictions, with new
+/// readings among the data. All in standard deviations. Shapes: (old), (old, free), (new), (new, free)
+double separation(Eigen::VectorXd const& difference, Eigen::MatrixXd const& derivatives,
+                  Eigen::VectorXd const& new_difference, Eigen::MatrixXd const& new_derivatives);
 
 }  // namespace layerloop::validation
