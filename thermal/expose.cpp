@@ -127,14 +127,11 @@ MeltRecord make_record(HeatSystem const& system, HeatCells const& cells, Communi
 
 }  // namespace
 
-HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
+HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& metal,
                    HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
                    Report report, AbsorbedNow const& absorbed_now) {
   check(source, content.grid);
   HeatCells const cells = make_heat_cells(content, side_y);
-  Material metal = material;
-  apply_latent_heat(metal, effect_strength(effects, "latent_heat"));
-  apply_variable_conductivity(metal, effect_strength(effects, "variable_conductivity"));
   double const hottest = hottest_allowed(metal, effect_strength(effects, "evaporation") != 0);
   EnthalpyTable const table(metal, settings.ambient_temperature, hottest);
   double const isotherm = settings.isotherm(metal);
@@ -188,11 +185,19 @@ HeatOutcome expose(CellContent const& content, HeatSource const& source, Materia
   return outcome;
 }
 
+Material with_effects(Material metal, Effects const& effects) {
+  apply_latent_heat(metal, effect_strength(effects, "latent_heat"));
+  apply_variable_conductivity(metal, effect_strength(effects, "variable_conductivity"));
+  return metal;
+}
+
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
                    Report report, AbsorbedNow const& absorbed_now) {
   double const span = content.grid.cell * content.grid.n[1];
   bool const periodic = std::abs(span - settings.period_y()) < 0.01 * content.grid.cell;
-  return expose(content, source, modified_material(settings), settings.heat, settings.effects,
+  Case effective = settings;
+  effective.material = with_effects(settings.material, settings.effects);
+  return expose(content, source, modified_material(effective), settings.heat, settings.effects,
                 periodic ? SideY::periodic : SideY::far_field, comm, report, absorbed_now);
 }
 

@@ -39,8 +39,8 @@ using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now
 
 /// Heats the cells with the source, starting from ambient, until the source has ended and nothing is above the solidus.
 ///
-/// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `latent_heat`, `variable_conductivity`,
-/// `evaporation`, `surface_losses` and `keyhole` as switched on. Far field: at ambient, heat.substrate_depth below the
+/// Enthalpy finite volumes (thermal/conduction.hpp) with the effects `evaporation`, `surface_losses`, `marangoni` and
+/// `keyhole` as switched on. Far field: at ambient, heat.substrate_depth below the
 /// bottom and heat.margin beyond the sides (the distance of the heated patch, which is exact for a steady point source
 /// on a half space). HeatSolver::automatic steps explicitly; where the beam moves by less than a cell in many steps,
 /// and with growing steps while it is off, it takes super steps. Metal that is still cold is left out.
@@ -49,12 +49,16 @@ using AbsorbedNow = std::function<void(std::size_t stretch, MeltState const& now
 /// \throws PhysicsError  NaN; metal above 1.5 boiling points, or with evaporation 2000 K above it; heat that does not
 /// balance to 1e-9 \throws StoppedBySignal \note Collective. Explicit steps give the same bits for any number of ranks;
 /// implicit ones agree to the solver's tolerance, 1e-12.
-HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& material,
+HeatOutcome expose(CellContent const& content, HeatSource const& source, Material const& metal,
                    HeatSettings const& settings, Effects const& effects, SideY side_y, Communicator const& comm,
                    Report report, AbsorbedNow const& absorbed_now = {});
 
-/// The same from a case: y periodic when the grid spans the machine's width, far field otherwise. \param absorbed_now
-/// where given, sets the powers of the source one by one while it is heated
+/// A metal with the effects `latent_heat` and `variable_conductivity` as switched on.
+Material with_effects(Material metal, Effects const& effects);
+
+/// The same from a case, its metal with_effects() and then with its modifiers: y periodic when the grid spans the
+/// machine's width, far field otherwise. \param absorbed_now where given, sets the powers of the source one by one
+/// while it is heated
 HeatOutcome expose(CellContent const& content, HeatSource const& source, Case const& settings, Communicator const& comm,
                    Report report, AbsorbedNow const& absorbed_now = {});
 

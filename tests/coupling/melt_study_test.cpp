@@ -94,6 +94,21 @@ TEST(Melt, SecondGridTellsTheErrorOfTheFirst) {
   EXPECT_LT(std::abs(pool.depth - 41.1274e-6), 3 * study.u_num.depth + 0.5e-6);
 }
 
+/// A formula of the user's acts on what an effect that is switched off leaves, not under it.
+TEST(Melt, ModifierActsWithoutVariableConductivity) {
+  std::vector<std::string> const changes{"heat.cell_size=\"7 um\"", "effects.variable_conductivity.enabled=false"};
+  auto const pool_with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), changes.begin(), changes.end());
+    return study_of(more).melted.heat.melt.pool;
+  };
+  PoolSize const by_formula =
+      pool_with({"modifiers.better.target=material.conductivity", "modifiers.better.expression=\"1.5*k\""});
+  PoolSize const better = pool_with({"material.constant.conductivity=36"});
+  EXPECT_NEAR(by_formula.width, better.width, 5e-8) << "its table has other steps";
+  EXPECT_NEAR(by_formula.depth, better.depth, 5e-8);
+  EXPECT_GT(std::abs(better.width - pool_with({}).width), 1e-6);
+}
+
 /// One layer of some fifty soft grains, and a track on it.
 constexpr char const* layer = R"(
 [powder]
@@ -160,7 +175,8 @@ TEST(Melt, SecondGridOfASpreadLayerIsTheLayerInLargerCells) {
   EXPECT_NEAR(fine.absorptivity_u_mesh, std::abs(in_large_cells - absorptivity) / 0.5, 1e-6);
   EXPECT_GT(fine.absorptivity_u_mesh, 3 * fine.melted.exposure.mean.standard_error) << "the rays would tell";
   MeltStudy const cold = melted("cold", {"melt.two_grids=true", "laser.power=2"});
-  EXPECT_LT(cold.absorptivity_u_mesh, 2 * cold.melted.exposure.mean.standard_error) << "grains that do not melt are spheres, whatever the cells";
+  EXPECT_LT(cold.absorptivity_u_mesh, 2 * cold.melted.exposure.mean.standard_error)
+      << "grains that do not melt are spheres, whatever the cells";
   fs::remove_all(folder);
 }
 

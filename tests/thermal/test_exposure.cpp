@@ -18,8 +18,8 @@ HeatSettings open_settings(HeatSolver solver = HeatSolver::explicit_steps) {
 HeatOutcome track_on_grains(HeatSettings const& settings, Effects const& effects, double absorbed = 25) {
   CellContent const content = plate_with_grains({40, 24, 18}, 11);
   HeatSource const source = beam_from_above(content, absorbed, 35e-6, 1.0, 50e-6, 150e-6);
-  return expose(content, source, built_in_materials().at("IN718"), settings, effects, SideY::periodic, Communicator(),
-                Report::silent);
+  return expose(content, source, with_effects(built_in_materials().at("IN718"), effects), settings, effects,
+                SideY::periodic, Communicator(), Report::silent);
 }
 
 void expect_same_bits(HeatOutcome const& a, HeatOutcome const& b) {

@@ -25,8 +25,8 @@ GapGas gap_gas(HeatSettings const& settings, double accommodation, double emissi
 /// Conductivity of the unit cell of two grains that touch, in parallel lines of flow through solid and gas, over that
 /// of the gas (Zehner & Schluender, Chem. Ing. Tech. 42 (1970) 933, with the jump added to the gap):
 ///   int_0^1 2 u du / (1 + 2 jump / D - (1 - k_gas / k_solid) z),  z = B u / (1 + (B - 1) u),
-/// z the height of solid over half the cell's, where sqrt(1 - u^2) is the distance from the axis over the cell's radius.
-/// \param shape  B; 1: spheres
+/// z the height of solid over half the cell's, where sqrt(1 - u^2) is the distance from the axis over the cell's
+/// radius. \param shape  B; 1: spheres
 double touching_grains(double solid, GapGas const& gas, double diameter, double shape = 1);
 
 /// Shape B of that unit cell for a random bed of spheres: 1.25 ((1 - porosity) / porosity)^(10/9) (ibid.).
