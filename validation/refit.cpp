@@ -149,8 +149,8 @@ Fit Refit::without(Fit fit, std::size_t active) const {
 Fit Refit::improved(Fit fit) const {
   auto const calibration = static_cast<Eigen::Index>(frame_.study().calibration.size());
   Eigen::Index const free = fit.jacobian.cols();
-  if (free == 0) {
-    fit.converged = true;
+  if (free == 0 || !std::isfinite(fit.objective)) {
+    fit.converged = free == 0;
     return fit;
   }
   Eigen::VectorXd weight = Eigen::VectorXd::Constant(free, strength_weight);

@@ -97,8 +97,13 @@ void drop_superfluous(Workbench const& bench, Selection& selection, std::vector<
       ++a;
       continue;
     }
+    Fit narrower = bench.refit().improved(bench.refit().without(selection.fit, a));
+    if (!std::isfinite(narrower.objective)) {  // without it the model has no answer somewhere
+      ++a;
+      continue;
+    }
     dropped.push_back(selection.fit.active[a]);
-    selection.fit = bench.refit().improved(bench.refit().without(selection.fit, a));
+    selection.fit = std::move(narrower);
     selection.trials.erase(selection.trials.begin() + static_cast<std::ptrdiff_t>(a));
   }
 }

@@ -207,13 +207,14 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
   bool const beaten = evidence.smooth_explained > diagnosis.explained + 0.1;
   // As many effects as may be share out the shape of something else among them.
   bool const patchwork = limit.gates && static_cast<int>(count) >= limit.most_effects;
-  // An input that would have to be as wrong as it can be.
-  bool const far_off =
-      limit.gates && std::ranges::any_of(evidence.selection.fit.active, [&](std::size_t k) {
-        Candidate const& candidate = evidence.bench.candidates[k];
-        double const strength = evidence.selection.fit.point.strengths[index(k)];
-        return candidate.kind == EffectClass::calibration && std::abs(strength) > 0.99 * candidate.largest;
-      });
+  // An input that would have to be as wrong as it can be, or a gauge that even then would not do.
+  bool const far_off = limit.gates && std::ranges::any_of(evidence.selection.fit.active, [&](std::size_t k) {
+                         Candidate const& candidate = evidence.bench.candidates[k];
+                         double const strength = evidence.selection.fit.point.strengths[index(k)];
+                         bool const counts = candidate.kind == EffectClass::calibration ||
+                                             (candidate.kind == EffectClass::instrument && !adequate);
+                         return counts && std::abs(strength) > 0.99 * candidate.largest;
+                       });
   bool const weak = patchwork || far_off || (!adequate && (diagnosis.explained <= limit.whole || beaten));
   if (weak && say_outliers(evidence, diagnosis)) return;
   if (weak)

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "validation/blind/analytic_chain.hpp"
@@ -62,6 +63,37 @@ TEST(ResidualFrame, knows_how_far_two_draws_of_grains_lie_apart) {
     sum += frame.change(other, another).squaredNorm() / draws;
   }
   EXPECT_NEAR(frame.sampling_variance(base) / sum, 1, 0.15);
+}
+
+/// The chain, stopped by a guard where its absorptivity is high.
+struct Guarded : Model {
+  AnalyticChain chain;
+  explicit Guarded(Study const& study) : chain(study, {}) {}
+  Prediction predict(ModelPoint const& point) override {
+    Prediction found = chain.predict(point);
+    if (point.calibration[0] > 0.4) found.value[0] = std::nan("");
+    return found;
+  }
+  double passes() const override { return chain.passes(); }
+};
+
+TEST(Refit, of_a_model_without_an_answer_is_no_fit) {
+  Study study = part_of(analytic_design(5), Role::train);
+  ASSERT_EQ(study.calibration[0].key, "laser.absorptivity");
+  Guarded model(study);
+  ModelPoint point{prior_means(study), Eigen::VectorXd(0)};
+  Eigen::VectorXd const there = at_observations(study, model.predict(point).value);
+  for (std::size_t i = 0; i < study.observations.size(); ++i)
+    study.observations[i].value = there[static_cast<Eigen::Index>(i)];
+  ResidualFrame const frame(study, model.predict(point));
+  Refit const refit(model, {}, frame, 1);
+  Fit const good = refit.improved(refit.at(point, {}));
+  EXPECT_TRUE(good.converged);
+  EXPECT_LT(good.objective, 1e-9);
+  point.calibration[0] = 0.42;
+  Fit const bad = refit.improved(refit.at(point, {}));
+  EXPECT_FALSE(bad.converged) << "nothing to step from";
+  EXPECT_FALSE(std::isfinite(bad.objective));
 }
 
 }  // namespace

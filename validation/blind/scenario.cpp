@@ -75,7 +75,8 @@ class Draw {
 
   /// Adds a cause, as strong as a drawn visibility wants it and its bound allows.
   void hide(HiddenCause cause, double largest, Visible visible) {
-    double const wanted = visible == Visible::clearly ? log_uniform(5, 30) : log_uniform(2, 30);
+    double const least = visible == Visible::faintly_too ? 2 : world_.effort() == Effort::free ? 5 : 8;
+    double const wanted = log_uniform(least, 30);
     int const trials = world_.effort() == Effort::free ? 4 : 2;
     for (int trial = 0; trial < trials; ++trial) {
       double const factor = wanted / visibility_of({cause});
@@ -133,22 +134,29 @@ class Draw {
       probed_ = world_.effort() == Effort::free ? calibration_ : prior_means(train_);
       model_ = world_.model(train_, candidates_);
       separation_ = std::make_unique<Separation>(train_, *model_, candidates_, probed_, world_.effort());
-      plain_ = world_.truth(train_, probed_, {}, probing_seed);
+      plain_ = expected({});
     }
     return *separation_;
   }
 
+  /// Over seeds of all scenarios, so that they share what was computed.
+  Eigen::VectorXd expected(std::vector<HiddenCause> const& causes) const {
+    int const count = world_.truths_averaged();
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(index(train_.observables.size()));
+    for (int seed = 1; seed <= count; ++seed)
+      sum += world_.truth(train_, probed_, causes, static_cast<std::uint64_t>(seed));
+    return sum / count;
+  }
+
   Eigen::VectorXd change_of(std::vector<HiddenCause> const& causes) {
     separation();
-    Eigen::VectorXd const change = world_.truth(train_, probed_, causes, probing_seed) - plain_;
+    Eigen::VectorXd const change = expected(causes) - plain_;
     return change.array().isFinite().select(change, 0);  // where nothing melts, nobody measures a pool
   }
   double visibility_of(std::vector<HiddenCause> const& causes) {
     Eigen::VectorXd const change = change_of(causes);
     return separation().visibility(change);
   }
-
-  static constexpr std::uint64_t probing_seed = 1;  // of all scenarios, so that they share what was computed
 
   World const& world_;
   std::uint64_t secret_;

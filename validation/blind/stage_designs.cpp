@@ -36,6 +36,31 @@ edge_radius = "5 um"
 blade_clearance = "5 um"
 )";
 
+/// Piles and tilted plates of few grains, so that both take a second.
+constexpr auto pile_case = R"([powder]
+material = "316L"
+basis = "number"
+diameters = ["24 um", "30 um"]
+fractions = [0.5, 0.5]
+
+[contact]
+youngs_modulus = "4 MPa"
+poisson_ratio = 0.3
+restitution = 0.5
+sliding_friction = 0.5
+rolling_friction = 0
+cohesion = "none"
+
+[calibrate]
+base_diameter = "320 um"
+pile_particles = 400
+plate_length = "240 um"
+plate_particles = 230
+tilt_rate = "1.2 deg/ms"
+tilt_from = "6 deg"
+settling_time = "6 ms"
+)";
+
 constexpr auto laser_case = R"(
 [laser]
 power = "60 W"
@@ -157,6 +182,29 @@ StageDesign powder() {
           .jumps = {{"lot_jump", 5, {}, {}}}};
 }
 
+StageDesign piles() {
+  Conditions conditions;
+  for (double const base : {320e-6, 370e-6, 420e-6})
+    for (double const friction : {0.4, 0.6})
+      conditions.push_back({{"calibrate.base_diameter", base}, {"contact.sliding_friction", friction}});
+  return {.name = "piles",
+          .case_text = pile_case,
+          .conditions = conditions,
+          .bed_keys = {"calibrate.base_diameter", "contact.sliding_friction"},
+          .held_out = 1,
+          .instruments = {{"pile.angle_of_repose", "", 0.012, 0, 0.045, true, 2},
+                          {"plate.slipping_angle", "", 0.006, 0, 0.015, true, 2}},
+          .calibration = {{"contact.restitution", "contact.restitution", 0.5, 0.1}},
+          .beds = 2,
+          .measured_beds = 3,
+          .true_resolution = {{"contact.time_step_fraction", 0.12}},
+          .classes = {one_effect, nothing, one_effect, real_life, one_effect, one_effect},
+          .hidden_effects = {"rolling_resistance", "cohesion"},
+          .biased_inputs = {"contact.sliding_friction"},
+          .foreign_causes = {},
+          .jumps = {{"lot_jump", 5, {}, {}}}};
+}
+
 StageDesign light() {
   return {.name = "light",
           .case_text = powder_case + std::string(laser_case) + even_light_case + run_case,
@@ -217,8 +265,8 @@ StageDesign layer() {
   return {.name = "layer",
           .case_text = powder_case + std::string(laser_case) + powder_track_case + run_case,
           .conditions = under(beds({{55e-6, 0.018}, {55e-6, 0.027}, {80e-6, 0.024}, {70e-6, 0.021}}),
-                              {{{"laser.power", 90}, {"scan.scan_speed", 0.8}, {"laser.spot_diameter", 60e-6}},
-                               {{"laser.power", 130}, {"scan.scan_speed", 1.2}, {"laser.spot_diameter", 70e-6}}}),
+                              {{{"laser.power", 45}, {"scan.scan_speed", 0.8}, {"laser.spot_diameter", 60e-6}},
+                               {{"laser.power", 70}, {"scan.scan_speed", 1.2}, {"laser.spot_diameter", 64e-6}}}),
           .bed_keys = bed_keys,
           .held_out = 2,
           .instruments = {{"pool.width", "", 2.5e-6, 0, 6e-6, false, 2},
@@ -239,7 +287,7 @@ StageDesign layer() {
 }  // namespace
 
 std::vector<StageDesign> const& stage_designs() {
-  static std::vector<StageDesign> const all{powder(), light(), tracks(), layer()};
+  static std::vector<StageDesign> const all{powder(), piles(), light(), tracks(), layer()};
   return all;
 }
 

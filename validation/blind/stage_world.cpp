@@ -54,6 +54,7 @@ class StageWorld final : public World {
 
   std::string name() const override { return design_.name; }
   Effort effort() const override { return Effort::dear; }
+  int truths_averaged() const override { return design_.measured_beds > 1 ? 2 : 1; }
   std::string case_text() const override { return design_.case_text; }
   std::vector<ScenarioClass> classes() const override { return design_.classes; }
   std::vector<std::string> hidden_effects() const override { return design_.hidden_effects; }

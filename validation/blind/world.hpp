@@ -34,6 +34,8 @@ class World {
   virtual ~World() = default;
   virtual std::string name() const = 0;
   virtual Effort effort() const = 0;
+  /// Where grains fall by chance, of so many truths the mean is what a visibility is judged by.
+  virtual int truths_averaged() const { return 1; }
   virtual std::string case_text() const = 0;               ///< of its studies
   virtual std::vector<ScenarioClass> classes() const = 0;  ///< of the scenarios, one after another, over and over
   virtual Study design(std::uint64_t seed) const = 0;      ///< without values
@@ -53,8 +55,8 @@ class World {
 /// The analytic chain, and its truth of other functional forms.
 std::unique_ptr<World> analytic_world();
 
-/// The stages of this program. \param name  "powder", "light", "tracks" or "layer" \param folder  its base case and
-/// what was computed stay here \throws InputError  no such name
+/// The stages of this program. \param name  "powder", "piles", "light", "tracks" or "layer" \param folder  its base
+/// case and what was computed stay here \throws InputError  no such name
 std::unique_ptr<World> stage_world(std::string const& name, std::filesystem::path const& folder);
 
 /// "analytic", and those of the stages.
