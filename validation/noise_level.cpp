@@ -32,12 +32,39 @@ double robust_scale(Eigen::VectorXd const& residual, Eigen::VectorXd const& diag
   return sizes.empty() ? 1.0 : median(sizes) / 0.6745;
 }
 
-/// Calibration, the best of the candidates and of the patterns: those above a score, the strongest first, while
-/// two thirds of the data stay free.
-Eigen::MatrixXd permissive_columns(Fit const& fit, Signatures const& signatures, Patterns const& patterns,
-                                   Thresholds const& thresholds) {
+/// Columns, and with them those of the level of a label that differs most, if one does: by an F test, because a step in
+/// few rows passes for scatter where a scale has to be known first.
+Eigen::MatrixXd with_level(Eigen::MatrixXd const& columns, Fit const& fit, ResidualFrame const& frame) {
+  constexpr double surely = 1e-3;
   Eigen::Index const n = fit.residual.size();
-  Eigen::MatrixXd columns = fit.jacobian;
+  Projection const without(n, columns);
+  double const left = without(fit.residual).squaredNorm();
+  std::vector<Jump> const jumps =
+      jumps_of(frame.study(), at_observations(frame.study(), fit.prediction.value), frame.whiten());
+  Eigen::MatrixXd best = columns;
+  double least = surely / static_cast<double>(std::max<std::size_t>(1, jumps.size()));
+  for (Jump const& jump : jumps) {
+    if (jump.label == order_of_acquisition) continue;
+    Eigen::MatrixXd wider(n, columns.cols() + jump.columns.cols());
+    wider << columns, frame.without_spared(jump.columns);
+    Projection const with(n, wider);
+    double const taken = static_cast<double>(with.rank() - without.rank()),
+                 dof = static_cast<double>(n - with.rank()) - static_cast<double>(frame.spared().size());
+    if (taken < 1 || dof < 3) continue;
+    double const rest = with(fit.residual).squaredNorm();
+    boost::math::fisher_f const f(taken, dof);
+    double const p = boost::math::cdf(boost::math::complement(f, std::max(0.0, (left - rest) / taken / (rest / dof))));
+    if (p < least) least = p, best = wider;
+  }
+  return best;
+}
+
+/// Calibration, a label, the best of the candidates and of the patterns: those above a score, the strongest first,
+/// while two thirds of the data stay free.
+Eigen::MatrixXd permissive_columns(Fit const& fit, ResidualFrame const& frame, Signatures const& signatures,
+                                   Patterns const& patterns, Thresholds const& thresholds) {
+  Eigen::Index const n = fit.residual.size();
+  Eigen::MatrixXd columns = with_level(fit.jacobian, fit, frame);
   Eigen::Index const most = std::max<Eigen::Index>(columns.cols(), n / 3);
   double scale = 1;
   while (columns.cols() < most) {
@@ -106,7 +133,7 @@ NoiseLevel find_noise_level(ResidualFrame& frame, Fit& fit, Signatures& signatur
   if (!thresholds.scales) return level;
   auto const most = static_cast<std::size_t>(thresholds.outlier_share * static_cast<double>(frame.size()));
   for (;;) {
-    Eigen::MatrixXd const columns = permissive_columns(fit, signatures, patterns, thresholds);
+    Eigen::MatrixXd const columns = permissive_columns(fit, frame, signatures, patterns, thresholds);
     Projection const project(frame.size(), columns);
     Eigen::VectorXd const left = project(fit.residual);
     double const scale = std::max(1.0, robust_scale(left, project.diagonal()));

@@ -147,6 +147,17 @@ bool say_outliers(Evidence const& evidence, Diagnosis& diagnosis) {
   return true;
 }
 
+/// Whether one level of a label is all that differs.
+bool say_level(Evidence const& evidence, Diagnosis& diagnosis, Adequacy const& now) {
+  auto const jump = sufficient_level(evidence);
+  if (!jump) return false;
+  say(diagnosis, Verdict::CONFOUNDED,
+      fmt::format(
+          "{0} differs, and nothing within the {1}s: these data cannot tell a physical cause from the {1} ({2}).",
+          jump->words, jump->label, top_patterns(now)));
+  return true;
+}
+
 /// Nothing was chosen: is there anything to explain, and what does it look like?
 void verdict_without_candidate(Evidence const& evidence, Diagnosis& diagnosis) {
   Thresholds const& limit = evidence.bench.thresholds;
@@ -168,12 +179,7 @@ void verdict_without_candidate(Evidence const& evidence, Diagnosis& diagnosis) {
     return say(diagnosis, Verdict::CONSISTENT, "Model and measurements agree within their uncertainties.");
   }
   if (say_outliers(evidence, diagnosis)) return;
-  if (auto const jump = sufficient_level(evidence))
-    return say(
-        diagnosis, Verdict::CONFOUNDED,
-        fmt::format("{0} differs, and nothing within the {1}s: these data cannot tell a physical cause from the {1} "
-                    "({2}).",
-                    jump->words, jump->label, top_patterns(now)));
+  if (say_level(evidence, diagnosis, now)) return;
   if (std::string const alone = lonely_condition(evidence, evidence.selection.fit); !alone.empty())
     return say(diagnosis, Verdict::NOISE,
                fmt::format("Condition {} alone does not fit; without it nothing needs a cause. Repeat it.", alone));
@@ -216,7 +222,7 @@ void verdict_with_candidates(Evidence const& evidence, Diagnosis& diagnosis) {
                          return counts && std::abs(strength) > 0.99 * candidate.largest;
                        });
   bool const weak = patchwork || far_off || (!adequate && (diagnosis.explained <= limit.whole || beaten));
-  if (weak && say_outliers(evidence, diagnosis)) return;
+  if (weak && (say_outliers(evidence, diagnosis) || say_level(evidence, diagnosis, evidence.before))) return;
   if (weak)
     return say(
         diagnosis, Verdict::UNKNOWN,
