@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/write_file.hpp"
 #include "coupling/report/html.hpp"
@@ -228,13 +229,15 @@ std::string text_of(std::vector<Score> const& scores) {
 
 std::string write_blind_report(std::vector<std::filesystem::path> const& folders, std::filesystem::path const& out) {
   std::vector<Opened> all;
-  std::vector<std::string> worlds, methods = other_methods(folders.front());
+  std::set<std::string> worlds;
+  std::vector<std::string> methods = other_methods(folders.front());
   for (std::filesystem::path const& folder : folders) {
     json const manifest = json::parse(read_file(folder / "manifest.json"));
-    worlds.push_back(manifest.at("world"));
+    worlds.insert(manifest.at("world").get<std::string>());
     if (other_methods(folder) != methods) methods.clear();
+    std::filesystem::path const set = folder.has_filename() ? folder.filename() : folder.parent_path().filename();
     for (Opened& one : opened_blind_test(folder)) {
-      if (folders.size() > 1) one.answer.id = fmt::format("{} {}", worlds.back(), one.answer.id);
+      if (folders.size() > 1) one.answer.id = fmt::format("{} {}", set.string(), one.answer.id);
       all.push_back(std::move(one));
     }
   }
