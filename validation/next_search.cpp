@@ -5,22 +5,17 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <tuple>
 
 #include "core/error.hpp"
 #include "validation/gaussian_process.hpp"
+#include "validation/proposal.hpp"
 #include "validation/quantity.hpp"
 #include "validation/rival_fits.hpp"
 
 namespace layerloop::validation {
 namespace {
 
-// Squared distance D at which the right one of two leads in 95 of 100 studies, and in 77 by the 6 of -2 ln L that end a
-// GROUP: the lead is normal about D with the variance 4 D.
-constexpr double told_apart = 10.8;
-constexpr int most_replicates = 20;
 constexpr std::size_t varied_keys = 3, simulated_proposals = 3, fewest_for_surrogate = 6, most_places = 3;
-constexpr double common_uncertainty = 0.05;  // relative, of a quantity that the study has no reading of
 
 std::vector<std::string> varied_inputs(Study const& study) {
   std::map<std::string, std::set<double>> levels;
@@ -32,23 +27,6 @@ std::vector<std::string> varied_inputs(Study const& study) {
   std::ranges::stable_sort(keys, {}, [&](std::string const& key) { return -static_cast<int>(levels[key].size()); });
   if (keys.size() > varied_keys) keys.resize(varied_keys);
   return keys;
-}
-
-/// One reading of a quantity: what about it averages out over replicates, and what does not; relative.
-struct ReadingError {
-  double random = common_uncertainty, shared = 0;
-};
-ReadingError reading_error(Study const& study, std::string const& quantity) {
-  std::vector<double> random, shared;
-  for (Observation const& seen : study.observations) {
-    if (seen.quantity != quantity || seen.value == 0) continue;
-    random.push_back(seen.u_stat / std::abs(seen.value));
-    shared.push_back(std::hypot(seen.u_sys_rel, seen.u_sys_abs / seen.value));
-  }
-  if (random.empty()) return {};
-  std::ranges::sort(random);
-  std::ranges::sort(shared);
-  return {random[random.size() / 2], shared[shared.size() / 2]};
 }
 
 /// What the runs of the study give, measured or not.
@@ -114,97 +92,6 @@ Eigen::RowVectorXd place_of(Condition const& condition, std::vector<std::string>
 
 bool is_corner(Eigen::RowVectorXd const& place) { return (place.array().min(1 - place.array()).abs() < 1e-9).all(); }
 
-/// The data as they are, for every pair of the best explanation with a rival.
-struct Standing {
-  std::vector<Eigen::VectorXd> difference;   ///< by rival, the first is the best one: unused
-  std::vector<Eigen::MatrixXd> derivatives;  ///< by rival
-};
-
-/// Quantities to be read under one condition or several.
-struct Proposal {
-  std::vector<std::size_t> conditions;      ///< (readings), of the grid
-  std::vector<std::string> quantities;      ///< (readings)
-  std::vector<Eigen::VectorXd> value;       ///< by rival: (readings)
-  std::vector<Eigen::MatrixXd> derivative;  ///< by rival: (readings, free numbers)
-
-  bool is_known() const {
-    return std::ranges::all_of(value, [](auto const& v) { return v.allFinite(); }) &&
-           std::ranges::all_of(derivative, [](auto const& d) { return d.allFinite(); }) &&
-           (value[0].array() != 0).all();
-  }
-};
-
-/// Of the means of so many readings of each quantity.
-Eigen::ArrayXd uncertainty(Proposal const& p, Study const& study, double sigma, int readings) {
-  Eigen::ArrayXd u(p.value[0].size());
-  for (Eigen::Index q = 0; q < u.size(); ++q) {
-    ReadingError const error = reading_error(study, p.quantities[static_cast<std::size_t>(q)]);
-    u[q] = sigma * std::abs(p.value[0][q]) * std::hypot(error.random / std::sqrt(readings), error.shared);
-  }
-  return u;
-}
-
-/// Least separation of the best explanation from any rival with so many readings more.
-double separation_with(Proposal const& p, Standing const& now, Study const& study, double sigma, int readings) {
-  Eigen::ArrayXd const weight = uncertainty(p, study, sigma, readings).inverse();
-  double least = 1e300;
-  for (std::size_t r = 1; r < p.value.size(); ++r) {
-    Eigen::VectorXd const d = (p.value[0] - p.value[r]).array() * weight;
-    for (std::size_t const refitted : {r, std::size_t{0}}) {
-      Eigen::MatrixXd const slopes = weight.matrix().asDiagonal() * p.derivative[refitted];
-      least = std::min(least, separation(now.difference[r], now.derivatives[refitted], d, slopes));
-    }
-  }
-  return least;
-}
-
-/// Both.
-Proposal joined(Proposal one, Proposal const& other) {
-  one.conditions.insert(one.conditions.end(), other.conditions.begin(), other.conditions.end());
-  one.quantities.insert(one.quantities.end(), other.quantities.begin(), other.quantities.end());
-  for (std::size_t r = 0; r < one.value.size(); ++r) {
-    Eigen::VectorXd value(one.value[r].size() + other.value[r].size());
-    value << one.value[r], other.value[r];
-    Eigen::MatrixXd derivative(value.size(), one.derivative[r].cols());
-    derivative << one.derivative[r], other.derivative[r];
-    one.value[r] = value, one.derivative[r] = derivative;
-  }
-  return one;
-}
-
-NextExperiment judged(Proposal const& p, std::vector<Condition> const& grid, Standing const& now, Study const& study,
-                      double sigma, std::vector<std::string> const& names) {
-  Eigen::ArrayXd const u = uncertainty(p, study, sigma, 1);
-  Eigen::ArrayXd nearest = p.value[0] - p.value[1];  // to that rival which is the hardest to tell in each reading
-  for (std::size_t r = 2; r < p.value.size(); ++r) {
-    Eigen::ArrayXd const d = p.value[0] - p.value[r];
-    nearest = (d.abs() < nearest.abs()).select(d, nearest);
-  }
-  Eigen::Index leading = 0;
-  (nearest / u).abs().maxCoeff(&leading);
-  std::size_t const place = p.conditions[static_cast<std::size_t>(leading)];
-  NextExperiment next{
-      .condition = grid[place], .quantity = p.quantities[static_cast<std::size_t>(leading)], .separates = names};
-  for (std::string const& quantity : std::set(p.quantities.begin(), p.quantities.end()))
-    if (quantity != next.quantity) next.together.push_back(quantity);
-  for (std::size_t const other : std::set(p.conditions.begin(), p.conditions.end()))
-    if (other != place) next.also_at.push_back(grid[other]);
-  next.separation = separation_with(p, now, study, sigma, 1);
-  next.u = u[leading];
-  next.difference = nearest[leading];
-  next.replicates = most_replicates + 1;
-  for (int n = most_replicates; n >= 1; --n)
-    if (separation_with(p, now, study, sigma, n) >= told_apart) next.replicates = n;
-  return next;
-}
-
-bool better(NextExperiment const& a, NextExperiment const& b) {
-  auto const cost = [](NextExperiment const& e) {
-    return std::tuple(e.replicates, e.also_at.size(), e.together.size(), -e.separation);
-  };
-  return cost(a) < cost(b);
-}
-
 Study under(Study const& study, std::vector<Condition> const& conditions, std::vector<std::size_t> const& origin) {
   Study other = study;
   other.conditions = conditions;
@@ -253,6 +140,8 @@ class Search {
     std::map<std::string, Surrogates> surrogates;
     for (auto const& [quantity, predicted] : known) {
       quantities_.push_back(quantity);
+      if (std::ranges::find(study_.observations, quantity, &Observation::quantity) != study_.observations.end())
+        read_.push_back(quantity);
       if (between) surrogates.emplace(quantity, Surrogates(places, predicted));
     }
     for (std::size_t c = 0; c < conditions_.size(); ++c) {
@@ -296,13 +185,9 @@ class Search {
   std::vector<Proposal> proposals_at(std::size_t condition, Predict const& predict) const {
     std::vector<Proposal> proposals;
     std::vector<std::vector<std::string>> choices;
-    std::vector<std::string> read;
-    for (std::string const& quantity : quantities_) {
-      choices.push_back({quantity});
-      if (std::ranges::find(study_.observations, quantity, &Observation::quantity) != study_.observations.end())
-        read.push_back(quantity);
-    }
-    if (read.size() > 1) choices.push_back(read);
+    for (std::string const& quantity : quantities_)
+      if (read_ != std::vector{quantity}) choices.push_back({quantity});
+    choices.push_back(read_);
     for (std::vector<std::string> const& chosen : choices) {
       Proposal p{
           .conditions = std::vector(chosen.size(), condition), .quantities = chosen, .value = {}, .derivative = {}};
@@ -342,7 +227,7 @@ class Search {
         return Predicted{of.value[r][index(i)], of.derivative[r].row(index(i))};
       });
       for (Proposal const& p : proposals) keep_simulated(judge(p));
-      if (!proposals.empty()) simulated_.push_back(proposals.back());
+      if (!proposals.empty() && proposals.back().quantities == read_) simulated_.push_back(proposals.back());
     }
   }
 
@@ -375,7 +260,7 @@ class Search {
   double sigma_ = 1;
   std::vector<Condition> conditions_;
   std::vector<std::size_t> origin_, corners_;
-  std::vector<std::string> quantities_;
+  std::vector<std::string> quantities_, read_;  ///< of the runs; and those of them that the study reads
   std::vector<NextExperiment> screened_, found_;
   std::vector<Proposal> simulated_;  ///< all that the study reads, at every place where true runs were made
 };
