@@ -54,9 +54,11 @@ void add_blind(CLI::App& program, Action& chosen) {
 
   CLI::App* const make = step(*verb, options, "make", "Draw studies with hidden causes and seal the answers.");
   make->add_option("--scenarios", options.scenarios, "how many")->capture_default_str()->check(CLI::Range(1, 100000));
-  make->add_option("--world", options.world,
-                   "what stands for the process: a chain of formulas (analytic), or the stages of this program on "
-                   "spread beds (powder), their absorptivity (light), tracks on a plate (tracks) or on powder (layer)")
+  make->add_option(
+          "--world", options.world,
+          "what stands for the process: a chain of formulas (analytic), or the stages of this program on "
+          "spread beds (powder), piles and tilted plates (piles), absorptivity of beds (light), tracks on a plate "
+          "(tracks) or on powder (layer)")
       ->capture_default_str()
       ->check(CLI::IsMember(validation::world_names()));
   make->add_option("--seed", options.seed, "the secret that opens the seals")->required();

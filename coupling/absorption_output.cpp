@@ -8,6 +8,7 @@
 
 #include "core/bed_file.hpp"
 #include "core/case_file.hpp"
+#include "core/json_number.hpp"
 #include "core/png_image.hpp"
 #include "core/write_file.hpp"
 #include "coupling/optics_of_case.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 void put(json& to, std::string const& name, AbsorptionFigure const& figure) {
   to[name] = number(figure.value);

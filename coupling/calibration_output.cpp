@@ -8,6 +8,7 @@
 
 #include "core/case_file.hpp"
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "coupling/program_version.hpp"
 
@@ -16,8 +17,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 constexpr double degree = std::numbers::pi / 180;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 void add_angle(json& to, std::string const& name, MeasuredAngle const& angle) {
   to[name] = number(angle.value / degree);

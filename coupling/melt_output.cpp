@@ -8,6 +8,7 @@
 
 #include "core/case_file.hpp"
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/statistics.hpp"
 #include "core/vtkhdf.hpp"
 #include "core/write_file.hpp"
@@ -22,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json pool(MeltStudy const& study) {
   PoolSize const& size = study.melted.heat.melt.pool;
@@ -248,7 +247,7 @@ json melt_summary(MeltStudy const& study) {
            {"cooling_rate", study.cooling ? json(study.cooling->value) : json(nullptr)},
            {"cooling_rate_u_num", study.cooling ? json(study.cooling->u_num) : json(nullptr)},
            {"absorptivity", light.absorptivity},
-           {"absorptivity_u_num", std::hypot(light.standard_error, study.absorptivity_u_mesh)},
+           {"absorptivity_u_num", absorptivity_uncertainty(study)},
            {"standard_error", light.standard_error},
            {"normalised_enthalpy", normalised_enthalpy(study.placed, light.absorptivity)},
            {"spot_radius", study.placed.laser.spot_radius()},

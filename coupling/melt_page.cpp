@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "coupling/melt_output.hpp"
@@ -37,8 +36,7 @@ std::string cards(MeltStudy const& study) {
          card("Width", micrometres(pool.width, u.width), fmt::format("at the {}, across the track", isotherm)) +
          card("Depth", micrometres(pool.depth, u.depth), "below the original surface") +
          card("Length", micrometres(pool.length, u.length), "along the track, at one instant") +
-         card("Absorptivity",
-              with_uncertainty(light.absorptivity, std::hypot(light.standard_error, study.absorptivity_u_mesh)),
+         card("Absorptivity", with_uncertainty(light.absorptivity, absorptivity_uncertainty(study)),
               given               ? "given in the case"
               : study.second_grid ? "&plusmn; error of rays and cells"
                                   : "&plusmn; standard error of the rays") +

@@ -193,6 +193,10 @@ double depression_of(MeltStudy const& study) {
   return deepest;
 }
 
+double absorptivity_uncertainty(MeltStudy const& study) {
+  return std::hypot(study.melted.exposure.mean.standard_error, study.absorptivity_u_mesh);
+}
+
 std::optional<double> second_cell(Case const& checked) {
   constexpr double wanted = 1.5, least = 1.2, most = 2.1;
   double const cell = checked.heat.cell_size, width = checked.machine.width, length = checked.machine.deposition_length;

@@ -77,6 +77,9 @@ struct MeltStudy {
 /// reached below the surface that the powder was spread on.
 double depression_of(MeltStudy const& study);
 
+/// Standard uncertainty of the absorptivity: of the rays, and of the cells where there is a second grid.
+double absorptivity_uncertainty(MeltStudy const& study);
+
 /// Cells of the second grid: 1.5 times as large, in a spread layer the nearest to that (1.2 to 2.1) that divide its
 /// width and length; nothing: there are none. On a plate that is still to be chosen, its cell_size may be 0.
 std::optional<double> second_cell(Case const& checked);

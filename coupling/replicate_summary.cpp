@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/json_number.hpp"
 #include "core/statistics.hpp"
 
 namespace layerloop::coupling {
@@ -16,8 +17,7 @@ bool is_measured(json const& value) { return value.is_number() || value.is_null(
 
 std::vector<double> numbers(std::vector<json> const& values) {
   std::vector<double> all;
-  for (json const& value : values)
-    all.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+  for (json const& value : values) all.push_back(number_or_nan(value));
   return all;
 }
 

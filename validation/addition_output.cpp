@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/page.hpp"
@@ -22,8 +23,6 @@ using coupling::escape;
 using coupling::figure;
 using coupling::significant;
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 std::string names_of(std::vector<AddedEffect> const& effects) {
   std::string names;

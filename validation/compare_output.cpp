@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "validation/display.hpp"
 
@@ -18,8 +19,6 @@ using nlohmann::json;
 
 constexpr std::size_t shown_patterns = 3;
 constexpr double clear_p = 0.01;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json stages(Comparison const& compared) {
   json all = json::object();

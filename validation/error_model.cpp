@@ -97,4 +97,10 @@ Eigen::VectorXd Projection::diagonal() const {
   return Eigen::VectorXd::Ones(basis_.rows()) - basis_.rowwise().squaredNorm();
 }
 
+Eigen::MatrixXd beside(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b) {
+  Eigen::MatrixXd both(a.rows(), a.cols() + b.cols());
+  both << a, b;
+  return both;
+}
+
 }  // namespace layerloop::validation

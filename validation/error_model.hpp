@@ -45,4 +45,7 @@ class Projection {
   Eigen::MatrixXd basis_;
 };
 
+/// The columns of both.
+Eigen::MatrixXd beside(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b);
+
 }  // namespace layerloop::validation

@@ -343,8 +343,7 @@ std::string next_table(Explanation const& explained) {
          "<th>rivals differ by</th><th>a reading's u</th><th>separates</th><th>by</th></tr></thead><tbody>\n" +
          rows +
          "</tbody></table></div>\n<p class=\"remark\">Best first. Readings: as many as put the right one ahead in 95 "
-         "of "
-         "100 studies, and end the group in 77. <a class=\"numbers\" href=\"next.csv\">next.csv</a></p>\n";
+         "of 100 studies, and end the group in 77. <a class=\"numbers\" href=\"next.csv\">next.csv</a></p>\n";
 }
 
 }  // namespace layerloop::validation

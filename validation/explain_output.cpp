@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "validation/display.hpp"
 #include "validation/explain_page.hpp"
@@ -18,8 +19,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t shown_patterns = 3, shown_limits = 4, shown_candidates = 5;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json finding(CandidateFinding const& effect) {
   return {
@@ -292,16 +291,16 @@ ReadExplanation read_explanation(std::filesystem::path const& summary) {
                        .addition = {},
                        .groups = {},
                        .pattern = all.at("pattern")};
-  auto const value = [](json const& entry) { return entry.is_number() ? entry.get<double>() : std::nan(""); };
   for (json const& effect : all.at("effects")) {
-    read.addition.effects.push_back({effect.at("name"), value(effect.at("strength")), value(effect.at("u_strength"))});
+    read.addition.effects.push_back(
+        {effect.at("name"), number_or_nan(effect.at("strength")), number_or_nan(effect.at("u_strength"))});
     read.groups.push_back(effect.at("group"));
   }
   for (json const& p : all.at("parameters")) {
-    read.addition.calibration_without[p.at("name")] = value(p.at("calibrated_value"));
-    read.addition.calibration_with[p.at("name")] = value(p.at("value"));
+    read.addition.calibration_without[p.at("name")] = number_or_nan(p.at("calibrated_value"));
+    read.addition.calibration_with[p.at("name")] = number_or_nan(p.at("value"));
   }
-  read.addition.sigma2 = value(all.at("sigma2"));
+  read.addition.sigma2 = number_or_nan(all.at("sigma2"));
   return read;
 }
 

@@ -34,19 +34,17 @@ double robust_scale(Eigen::VectorXd const& residual, Eigen::VectorXd const& diag
 
 /// Columns, and with them those of the level of a label that differs most, if one does: by an F test, because a step in
 /// few rows passes for scatter where a scale has to be known first.
-Eigen::MatrixXd with_level(Eigen::MatrixXd const& columns, Fit const& fit, ResidualFrame const& frame) {
+Eigen::MatrixXd with_level(Eigen::MatrixXd const& columns, Fit const& fit, ResidualFrame const& frame,
+                           std::vector<Jump> const& jumps) {
   constexpr double surely = 1e-3;
   Eigen::Index const n = fit.residual.size();
   Projection const without(n, columns);
   double const left = without(fit.residual).squaredNorm();
-  std::vector<Jump> const jumps =
-      jumps_of(frame.study(), at_observations(frame.study(), fit.prediction.value), frame.whiten());
   Eigen::MatrixXd best = columns;
   double least = surely / static_cast<double>(std::max<std::size_t>(1, jumps.size()));
   for (Jump const& jump : jumps) {
     if (jump.label == order_of_acquisition) continue;
-    Eigen::MatrixXd wider(n, columns.cols() + jump.columns.cols());
-    wider << columns, frame.without_spared(jump.columns);
+    Eigen::MatrixXd const wider = beside(columns, frame.without_spared(jump.columns));
     Projection const with(n, wider);
     double const taken = static_cast<double>(with.rank() - without.rank()),
                  dof = static_cast<double>(n - with.rank()) - static_cast<double>(frame.spared().size());
@@ -62,9 +60,10 @@ Eigen::MatrixXd with_level(Eigen::MatrixXd const& columns, Fit const& fit, Resid
 /// Calibration, a label, the best of the candidates and of the patterns: those above a score, the strongest first,
 /// while two thirds of the data stay free.
 Eigen::MatrixXd permissive_columns(Fit const& fit, ResidualFrame const& frame, Signatures const& signatures,
-                                   Patterns const& patterns, Thresholds const& thresholds) {
+                                   Patterns const& patterns, std::vector<Jump> const& jumps,
+                                   Thresholds const& thresholds) {
   Eigen::Index const n = fit.residual.size();
-  Eigen::MatrixXd columns = with_level(fit.jacobian, fit, frame);
+  Eigen::MatrixXd columns = with_level(fit.jacobian, fit, frame, jumps);
   Eigen::Index const most = std::max<Eigen::Index>(columns.cols(), n / 3);
   double scale = 1;
   while (columns.cols() < most) {
@@ -127,13 +126,21 @@ bool spare_worst(ResidualFrame& frame, Eigen::VectorXd const& left, Eigen::Vecto
 
 }  // namespace
 
+std::vector<Jump> jumps_in(ResidualFrame const& frame, Fit const& fit) {
+  std::vector<Jump> jumps =
+      jumps_of(frame.study(), at_observations(frame.study(), fit.prediction.value), frame.whiten());
+  for (Jump& jump : jumps) jump.columns = frame.without_spared(jump.columns);
+  return jumps;
+}
+
 NoiseLevel find_noise_level(ResidualFrame& frame, Fit& fit, Signatures& signatures, Patterns& patterns,
                             Thresholds const& thresholds) {
   NoiseLevel level;
   if (!thresholds.scales) return level;
+  std::vector<Jump> const jumps = jumps_in(frame, fit);
   auto const most = static_cast<std::size_t>(thresholds.outlier_share * static_cast<double>(frame.size()));
   for (;;) {
-    Eigen::MatrixXd const columns = permissive_columns(fit, frame, signatures, patterns, thresholds);
+    Eigen::MatrixXd const columns = permissive_columns(fit, frame, signatures, patterns, jumps, thresholds);
     Projection const project(frame.size(), columns);
     Eigen::VectorXd const left = project(fit.residual);
     double const scale = std::max(1.0, robust_scale(left, project.diagonal()));

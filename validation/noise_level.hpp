@@ -16,6 +16,9 @@ struct NoiseLevel {
   std::vector<OutlierFinding> outliers;
 };
 
+/// Of every level of every label, and of every place in the order of acquisition; rows that are spared are none of it.
+std::vector<Jump> jumps_in(ResidualFrame const& frame, Fit const& fit);
+
 /// Scale and outliers under a permissive model, that may do everything which calibration, the candidates that fit and
 /// the strongest patterns can do: what is left has no smooth cause. Replicates count where they disagree with it.
 /// Spares the outliers in the frame and takes them out of fit and signatures. The largest residual goes first (Grubbs),

@@ -9,6 +9,7 @@
 
 #include "core/case_file.hpp"
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "coupling/melt_bed.hpp"
 
@@ -49,7 +50,6 @@ void make_folder(fs::path const& folder) {
 /// Names that no other process writes to at this time.
 fs::path own_name(fs::path const& path) { return fmt::format("{}.{}", path.string(), ::getpid()); }
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 double number(json const& value) { return value.is_null() ? std::nan("") : value.get<double>(); }
 
 }  // namespace

@@ -15,20 +15,6 @@ namespace {
 
 constexpr double alone_z = 5;  // of one or two readings, that may as well be the tip of a pattern
 
-Eigen::MatrixXd beside(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b) {
-  Eigen::MatrixXd both(a.rows(), a.cols() + b.cols());
-  both << a, b;
-  return both;
-}
-
-std::vector<Jump> jumps_in(Evidence const& evidence) {
-  ResidualFrame const& frame = evidence.bench.frame;
-  std::vector<Jump> jumps =
-      jumps_of(frame.study(), at_observations(frame.study(), evidence.calibrated.prediction.value), frame.whiten());
-  for (Jump& jump : jumps) jump.columns = frame.without_spared(jump.columns);
-  return jumps;
-}
-
 Fit with_columns(Fit fit, Eigen::MatrixXd const& columns) {
   fit.jacobian = beside(fit.jacobian, columns);
   return fit;
@@ -46,7 +32,7 @@ double jump_score(Evidence const& evidence, Jump const& jump, std::vector<Jump> 
 /// label is a cause that is known to be there; one that only the order of acquisition tells must do better.
 std::optional<Jump> rival_jump(Evidence const& evidence) {
   double const named = evidence.selection.adequacy.chi2 + 2 * (evidence.before.dof - evidence.selection.adequacy.dof);
-  std::vector<Jump> const all = jumps_in(evidence);
+  std::vector<Jump> const all = jumps_in(evidence.bench.frame, evidence.calibrated);
   std::optional<Jump> best;
   double least = std::numeric_limits<double>::infinity();
   for (Jump const& jump : all) {
@@ -60,7 +46,7 @@ std::optional<Jump> rival_jump(Evidence const& evidence) {
 
 /// The label one of whose levels explains everything best by itself, where no candidate did.
 std::optional<Jump> sufficient_level(Evidence const& evidence) {
-  std::vector<Jump> const all = jumps_in(evidence);
+  std::vector<Jump> const all = jumps_in(evidence.bench.frame, evidence.calibrated);
   std::optional<Jump> best;
   double least = std::numeric_limits<double>::infinity();
   for (Jump const& jump : all) {

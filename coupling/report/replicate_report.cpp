@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "coupling/report/csv_table.hpp"
 #include "coupling/report/html.hpp"
@@ -72,7 +73,7 @@ std::vector<Quantity> bin_quantities() {
 
 double number(json const& from, std::string const& key) {
   auto const found = from.find(key);
-  return found != from.end() && found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
+  return found != from.end() ? number_or_nan(*found) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double value(json const& from, Quantity const& q) { return q.scale * number(from, q.key); }

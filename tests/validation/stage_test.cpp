@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/write_file.hpp"
 #include "coupling/melt_study.hpp"
+#include "plate_track.hpp"
 #include "validation/stage_model.hpp"
 #include "validation/study_file.hpp"
 
@@ -16,23 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char const* plate = R"([powder]
-material = "316L"
-[laser]
-power = "60 W"
-absorptivity = 0.3
-wavelength = "1070 nm"
-spot_diameter = "60 um"
-spot_definition = "1/e2"
-[scan]
-kind = "track"
-scan_speed = "0.5 m/s"
-track_length = "250 um"
-[heat]
-cell_size = "7.5 um"
-size = ["450 um", "210 um", "90 um"]
-ambient_temperature = "298 K"
-)";
+std::string const plate = plate_track + "ambient_temperature = \"298 K\"\n";
 
 /// One thin layer of soft grains on a plate, and a short track on it.
 constexpr char const* powder = R"([case]

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/write_file.hpp"
+#include "plate_track.hpp"
 #include "validation/blind/stage_design.hpp"
 #include "validation/blind/world.hpp"
 #include "validation/stage_model.hpp"
@@ -17,24 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char const* plate = R"([powder]
-material = "316L"
-[laser]
-power = "60 W"
-absorptivity = 0.3
-wavelength = "1070 nm"
-spot_diameter = "60 um"
-spot_definition = "1/e2"
-[scan]
-kind = "track"
-scan_speed = "0.5 m/s"
-track_length = "250 um"
-[heat]
-cell_size = "7.5 um"
-size = ["450 um", "210 um", "90 um"]
-[effects.latent_heat]
-enabled = false
-)";
+std::string const plate = plate_track + "[effects.latent_heat]\nenabled = false\n";
 
 /// Four tracks on a plate, alike two by two, and what was computed, in a folder that goes away.
 struct Tracks {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/json_number.hpp"
 #include "validation/blind/scenario.hpp"
 
 namespace layerloop::validation {
@@ -10,12 +11,9 @@ namespace {
 
 std::array<std::string, 10> const letters{"a", "c1", "c2", "d", "e", "f", "g", "h", "i", "r"};
 
-/// What is not a number is written as null.
-double number(nlohmann::json const& json) { return json.is_number() ? json.get<double>() : NAN; }
-
 std::vector<double> numbers(nlohmann::json const& list) {
   std::vector<double> all;
-  for (nlohmann::json const& one : list) all.push_back(number(one));
+  for (nlohmann::json const& one : list) all.push_back(number_or_nan(one));
   return all;
 }
 
@@ -58,7 +56,7 @@ void from_json(nlohmann::json const& json, Answer& answer) {
   json.at("text").get_to(answer.text);
   answer.visibilities = numbers(json.at("visibilities"));
   answer.strengths = numbers(json.at("strengths"));
-  answer.largest_cosine = number(json.at("largest_cosine"));
+  answer.largest_cosine = number_or_nan(json.at("largest_cosine"));
   json.at("nearest").get_to(answer.nearest);
   json.at("variables").get_to(answer.variables);
   json.at("quantities").get_to(answer.quantities);

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_number.hpp"
 #include "core/progress.hpp"
 #include "core/write_file.hpp"
 #include "validation/blind/seal.hpp"
@@ -203,10 +204,7 @@ std::vector<Opened> opened_blind_test(fs::path const& folder) {
   for (Listed const& listed : scenarios_of(manifest_of(folder))) {
     json const answer = read_json(folder / listed.id / "answer.json", "layerloop blind open comes before blind score");
     json const verdict = read_json(folder / listed.id / "verdict.json", "layerloop blind run comes first");
-    auto const forecast = [&](char const* name) {
-      json const& figure = answer.at("forecast").at(name);
-      return figure.is_number() ? figure.get<double>() : NAN;  // what is not a number is written as null
-    };
+    auto const forecast = [&](char const* name) { return number_or_nan(answer.at("forecast").at(name)); };
     opened.push_back({answer.get<Answer>(),
                       verdict.at("judgement").get<Judgement>(),
                       {forecast("calibrated"), forecast("named"), forecast("smooth"), forecast("whitened")},
