@@ -8,15 +8,12 @@
 #include "core/case_file.hpp"
 
 namespace layerloop::apps {
-namespace {
 
 std::vector<std::string> overrides_with_seed(CaseOptions const& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back("case.seed=" + std::to_string(*options.seed));
   return overrides;
 }
-
-}  // namespace
 
 int cores_per_rank() {
   MPI_Comm node;
@@ -26,6 +23,8 @@ int cores_per_rank() {
   MPI_Comm_free(&node);
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
 }
+
+int threads_of(CaseOptions const& options) { return options.threads > 0 ? options.threads : cores_per_rank(); }
 
 void add_case_options(CLI::App& verb, CaseOptions& options) {
   verb.add_option("case", options.case_file, "the case file (TOML)")->required()->type_name("FILE.toml");
@@ -37,12 +36,12 @@ void add_case_options(CLI::App& verb, CaseOptions& options) {
 }
 
 Case read_case(CaseOptions const& options, std::optional<Process> process) {
-  omp_set_num_threads(options.threads > 0 ? options.threads : cores_per_rank());
+  omp_set_num_threads(threads_of(options));
   return layerloop::read_case(options.case_file, overrides_with_seed(options), process);
 }
 
 Case case_of_text(CaseOptions const& options, std::string const& text, std::optional<Process> process) {
-  omp_set_num_threads(options.threads > 0 ? options.threads : cores_per_rank());
+  omp_set_num_threads(threads_of(options));
   return layerloop::case_of_text(text, "the built-in case", overrides_with_seed(options), process);
 }
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <memory>
 
@@ -6,6 +7,7 @@
 #include "core/case_file.hpp"
 #include "core/communicator.hpp"
 #include "core/material_table.hpp"
+#include "core/progress.hpp"
 #include "coupling/cost.hpp"
 #include "coupling/solid_on_plate.hpp"
 
@@ -20,9 +22,10 @@ void print_cost(Case const& checked, std::filesystem::path const& case_file) {
       "  time_steps  {} (sweeps; settling adds about half as many)\n"
       "  rays        {}\n"
       "  cells       {}\n"
-      "  memory      {:.0f} MB\n",
+      "  memory      {:.0f} MB\n"
+      "  wall_time_estimate  {}\n",
       case_file.string(), checked.has_laser() ? "melting" : "spreading", cost.particles, cost.time_steps, cost.rays,
-      cost.cells, cost.memory * 1e-6);
+      cost.cells, cost.memory * 1e-6, as_time(cost.wall_time / omp_get_max_threads()));
 }
 
 void add_check(CLI::App& program, Action& chosen) {

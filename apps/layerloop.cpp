@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   apps::add_spread(program, action);
   apps::add_absorb(program, action);
   apps::add_melt(program, action);
+  apps::add_sweep(program, action);
   apps::add_bench(program, action);
   apps::add_check(program, action);
   apps::add_calibrate(program, action);

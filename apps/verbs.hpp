@@ -36,9 +36,14 @@ void add_explain(CLI::App& program, Action& chosen);
 void add_add(CLI::App& program, Action& chosen);
 void add_confirm(CLI::App& program, Action& chosen);
 void add_next(CLI::App& program, Action& chosen);
+void add_sweep(CLI::App& program, Action& chosen);
 
 /// Cores of this machine for each of the ranks that run on it.
 int cores_per_rank();
+/// Of each rank.
+int threads_of(CaseOptions const& options);
+/// The --set options, with the one that --seed stands for.
+std::vector<std::string> overrides_with_seed(CaseOptions const& options);
 void add_case_options(CLI::App& verb, CaseOptions& options);
 /// Also sets the number of threads. Without a process, the case tells by itself (core/case_file.hpp).
 Case read_case(CaseOptions const& options, std::optional<Process> process);

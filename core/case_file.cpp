@@ -21,9 +21,15 @@ namespace {
 
 bool is_material(std::string const& table) { return table.starts_with("material."); }
 
+/// Tables about many cases, that sweep and learn read: one case is the rest of the file.
+bool is_of_many_cases(std::string const& table) {
+  return table == "sweep" || table == "sweep.vary" || table == "learn";
+}
+
 bool is_table(std::string const& name) {
   std::string const family = family_of(name);
-  return is_material(name) || name == "material" || name == "effects" || name == "modifiers" || family != name ||
+  return is_of_many_cases(name) || is_material(name) || name == "material" || name == "effects" ||
+         name == "modifiers" || family != name ||
          std::find(case_tables().begin(), case_tables().end(), name) != case_tables().end();
 }
 
@@ -104,7 +110,7 @@ class CaseReader {
     for (auto const& [name, entry] : written_) {
       if (entry.table.empty()) {
         report_outside(entry);
-      } else if (is_table(entry.table) && !find_key(entry.table, entry.key)) {
+      } else if (is_table(entry.table) && !is_of_many_cases(entry.table) && !find_key(entry.table, entry.key)) {
         report_unknown_key(entry);
       }
     }
@@ -385,21 +391,6 @@ double common_cell(MachineSettings const& machine, std::filesystem::path const& 
       fmt::format("{}:1:1: missing key \"cell_size\" in [heat] (no edge from 1 to 5 um divides machine.width and "
                   "machine.deposition_length) round these lengths, or give it",
                   path.string()));
-}
-
-[[noreturn]] void throw_faults(std::vector<Fault> faults, std::string const& file) {
-  auto const order = [](Fault const& fault) {
-    return std::tuple(!fault.place.option.empty(), fault.place.line, fault.place.column);
-  };
-  std::stable_sort(faults.begin(), faults.end(), [&](Fault const& a, Fault const& b) { return order(a) < order(b); });
-  std::string all;
-  for (Fault const& fault : faults) {
-    Place const& place = fault.place;
-    std::string const where =
-        place.option.empty() ? fmt::format("{}:{}:{}", file, place.line, place.column) : place.option;
-    all += fmt::format("{}{}: {}", all.empty() ? "" : "\n", where, fault.message);
-  }
-  throw InputError(all);
 }
 
 }  // namespace

@@ -10,12 +10,14 @@ namespace layerloop {
 namespace {
 volatile std::sig_atomic_t stop_flag = 0;
 extern "C" void on_stop_signal(int) { stop_flag = 1; }
+}  // namespace
 
 std::string as_time(double seconds) {
   auto const s = static_cast<std::int64_t>(seconds + 0.5);
-  return s < 60 ? fmt::format("{} s", s) : fmt::format("{} min {:02} s", s / 60, s % 60);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
 }
-}  // namespace
 
 Progress::Progress(std::string stage, double total, bool enabled)
     : stage_(std::move(stage)),

@@ -25,6 +25,9 @@ class Progress {
   std::chrono::steady_clock::time_point start_, last_;
 };
 
+/// "12 s", "3 min 05 s", "2 h 10 min".
+std::string as_time(double seconds);
+
 /// Set by SIGINT, SIGTERM and SIGUSR1; long loops look at it collectively and stop at the next safe point.
 bool stop_requested();
 void catch_stop_signals();

@@ -19,7 +19,9 @@ enum class RandomStream : std::uint32_t {
   null_draws = 9,
   blind_design = 10,
   blind_truth = 11,
-  bootstrap = 12
+  bootstrap = 12,
+  design = 13,
+  acquisition = 14
 };
 
 /// Four independent uniform numbers in (0, 1), a pure function of its arguments (Philox 4x32-10, Salmon et al. 2011):

@@ -16,6 +16,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <tuple>
+
+#include "core/error.hpp"
 
 namespace layerloop {
 namespace {
@@ -117,11 +120,25 @@ TomlValue plain_value(toml::node const& node) {
 bool holds_table(std::string const& name, std::string_view key) {
   bool const of_material = name.starts_with("contact.") && name.find('.', 8) == std::string::npos;
   return name == "material" || name == "effects" || name == "modifiers" || name == "contact" || of_material ||
-         (name == "powder" && key == "mixture");
+         (name == "powder" && key == "mixture") || (name == "sweep" && key == "vary");
+}
+
+constexpr std::string_view varied = "sweep.vary";  // its keys are those of the case: machine.recoating_speed
+
+void add_varied(TomlContent& content, std::string const& before, toml::table const& table) {
+  for (auto const& [key, node] : table) {
+    std::string const name = before + std::string(key.str());
+    if (node.is_table()) {
+      add_varied(content, name + ".", *node.as_table());
+    } else {
+      content.entries.push_back({std::string(varied), name, plain_value(node), place_of(key.source())});
+    }
+  }
 }
 
 void add_table(TomlContent& content, std::string const& name, toml::table const& table, Place const& place) {
   content.tables.emplace(name, place);
+  if (name == varied) return add_varied(content, "", table);
   for (auto const& [key, node] : table) {
     Place const key_place = place_of(key.source());
     if (node.is_table() && holds_table(name, key.str())) {
@@ -133,6 +150,21 @@ void add_table(TomlContent& content, std::string const& name, toml::table const&
 }
 
 }  // namespace
+
+void throw_faults(std::vector<Fault> faults, std::string const& file) {
+  auto const order = [](Fault const& fault) {
+    return std::tuple(!fault.place.option.empty(), fault.place.line, fault.place.column);
+  };
+  std::stable_sort(faults.begin(), faults.end(), [&](Fault const& a, Fault const& b) { return order(a) < order(b); });
+  std::string all;
+  for (Fault const& fault : faults) {
+    Place const& place = fault.place;
+    std::string const where =
+        place.option.empty() ? fmt::format("{}:{}:{}", file, place.line, place.column) : place.option;
+    all += fmt::format("{}{}: {}", all.empty() ? "" : "\n", where, fault.message);
+  }
+  throw InputError(all);
+}
 
 std::string shown(TomlValue const& value) {
   struct Show {

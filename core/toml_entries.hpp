@@ -22,6 +22,10 @@ struct Fault {
   std::string message;
 };
 
+/// Tells every fault in one message, in the order of the file, those of options last: "case.toml:12:1: unknown key
+/// ...". \throws InputError  always
+[[noreturn]] void throw_faults(std::vector<Fault> faults, std::string const& file);
+
 /// A value as the user wrote it, before any unit is looked at. What TOML knows but no key takes (a date, a table) has
 /// only its name.
 struct TomlValue {
@@ -50,7 +54,7 @@ struct SyntaxFault {
 };
 
 /// Reads tables of one level, of two levels below `material` and `effects`, of three below `contact`, and
-/// `powder.mixture`.
+/// `powder.mixture`. What stands in [sweep.vary] has the table "sweep.vary" and a key with dots: "laser.power".
 /// Hostile text (depth, control bytes, size) is turned away before toml++ sees it. \throws SyntaxFault
 TomlContent parse_toml(std::string_view text);
 

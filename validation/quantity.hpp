@@ -9,6 +9,7 @@
 #include "coupling/calibration.hpp"
 #include "coupling/melt_study.hpp"
 #include "coupling/run_record.hpp"
+#include "coupling/verb.hpp"
 #include "validation/study.hpp"
 
 namespace layerloop::validation {
@@ -28,8 +29,7 @@ struct Spot {
   auto operator<=>(Spot const&) const = default;
 };
 
-/// Which of the program's verbs gives a quantity.
-enum class Verb { spread, calibrate, absorb, melt, run };
+using coupling::Verb;
 
 /// Something that can be measured, and how the program comes by it: the observation operator. A verb that does not give
 /// it has no function.

@@ -6,6 +6,7 @@
 
 #include "core/case.hpp"
 #include "core/communicator.hpp"
+#include "coupling/bed_cache.hpp"
 #include "validation/quantity.hpp"
 
 namespace layerloop::validation {
@@ -30,13 +31,9 @@ class StageCache {
   std::optional<RunReadings> find(std::string const& key) const;
   void keep(std::string const& key, RunReadings const& run) const;
 
-  struct Bed {
-    std::filesystem::path folder;  ///< with its checkpoint
-    bool computed;                 ///< just now
-  };
   /// The layers that the recoater spreads, from the cache or spread now. Collective.
   /// \throws PhysicsError, StoppedBySignal
-  Bed spread(Case const& checked) const;
+  coupling::BedCache::Bed spread(Case const& checked) const { return beds_.spread(checked, comm_); }
 
   /// A folder of this process alone.
   std::filesystem::path private_folder() const;
@@ -44,6 +41,7 @@ class StageCache {
  private:
   std::filesystem::path folder_;
   Communicator const& comm_;
+  coupling::BedCache beds_;
 };
 
 }  // namespace layerloop::validation

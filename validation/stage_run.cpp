@@ -4,6 +4,7 @@
 #include "coupling/calibration.hpp"
 #include "coupling/layer_loop.hpp"
 #include "coupling/melt_bed.hpp"
+#include "coupling/verb.hpp"
 
 namespace layerloop::validation {
 namespace {
@@ -85,26 +86,6 @@ Verb verb_for(Observable const& observable, bool scans) {
   return quantity.verb;
 }
 
-Process process_of(Verb verb) {
-  switch (verb) {
-    case Verb::spread:
-      return Process::spreading;
-    case Verb::calibrate:
-      return Process::calibrating;
-    case Verb::absorb:
-      return Process::absorbing;
-    case Verb::melt:
-      return Process::exposing;
-    case Verb::run:
-      return Process::melting;
-  }
-  return Process::melting;
-}
-
-bool spreads_first(Verb verb, Case const& checked) {
-  return verb == Verb::spread || ((verb == Verb::melt || verb == Verb::absorb) && checked.has_machine());
-}
-
 StageRun run_stage(Verb verb, Case const& checked, Places const& places, StageCache const& cache,
                    Communicator const& comm) {
   Case const seeded = without_idle_seed(verb, checked);
@@ -114,8 +95,8 @@ StageRun run_stage(Verb verb, Case const& checked, Places const& places, StageCa
   if (auto const known = cache.find(key)) return {*known, 0};
   StageRun run;
   try {
-    StageCache::Bed bed{{}, false};
-    if (spreads_first(verb, seeded)) bed = cache.spread(seeded);
+    coupling::BedCache::Bed bed{{}, false};
+    if (coupling::spreads_first(verb, seeded)) bed = cache.spread(seeded);
     run.computed = (bed.computed ? 1 : 0) + (verb == Verb::spread ? 0 : 1);
     compute(verb, seeded, bed.folder, places, cache, comm, run.readings);
   } catch (PhysicsError const& guard) {

@@ -8,12 +8,6 @@ namespace layerloop::validation {
 /// The verb that gives a quantity. \param scans  the case has a scan, so that light is traced along it
 Verb verb_for(Observable const& observable, bool scans);
 
-/// The process of a case for a verb.
-Process process_of(Verb verb);
-
-/// Whether the verb spreads a bed that others may use too.
-bool spreads_first(Verb verb, Case const& checked);
-
 /// Readings of one run and what had to be computed for it.
 struct StageRun {
   RunReadings readings;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/case_schema.hpp"
+#include "core/case_key.hpp"
 #include "validation/csv_table.hpp"
 #include "validation/study.hpp"
 
@@ -23,14 +23,6 @@ std::string with_unit(std::string const& number, std::string const& unit);
 
 /// A difference between two values, so that degC counts as K. \throws InputError
 double parse_difference(std::string const& number, std::string const& unit, Dimension dimension);
-
-bool takes_number(CaseKey const& row);
-
-/// The row of "laser.power"; null when there is none.
-CaseKey const* case_key(std::string const& name);
-
-/// `; did you mean "laser.power"?` for a name that no key has; also for "power" alone.
-std::string likely_case_key(std::string const& name, std::vector<std::string> const& others = {});
 
 std::vector<std::string> const& label_names();
 

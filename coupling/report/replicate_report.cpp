@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/json_number.hpp"
 #include "core/write_file.hpp"
 #include "coupling/report/csv_table.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/page.hpp"
+#include "coupling/report/shown_quantity.hpp"
 #include "coupling/report/svg_plot.hpp"
 #include "coupling/report/tables.hpp"
 
@@ -19,48 +18,9 @@ namespace {
 
 using nlohmann::json;
 
-/// A quantity as people read it: value in the summary times `scale`.
-struct Quantity {
-  std::string key, label, unit;
-  double scale = 1;
-};
+using Quantity = ShownQuantity;
 
 constexpr char const* um = "\xc2\xb5m";
-
-std::vector<Quantity> layer_quantities() {
-  return {{"effective_thickness", "effective thickness", um, 1e6},
-          {"real_effective_thickness", "real effective thickness", um, 1e6},
-          {"void_layer", "void layer", um, 1e6},
-          {"volume_fraction_nominal", "volume fraction, nominal", ""},
-          {"volume_fraction_real", "volume fraction, real", ""},
-          {"surface_coverage", "surface coverage", ""},
-          {"roughness_sa", "roughness Sa", um, 1e6},
-          {"roughness_sq", "roughness Sq", um, 1e6},
-          {"roughness_sz", "roughness Sz", um, 1e6},
-          {"d10", "D10 by volume", um, 1e6},
-          {"d50", "D50 by volume", um, 1e6},
-          {"d90", "D90 by volume", um, 1e6},
-          {"d10_number", "D10 by number", um, 1e6},
-          {"d50_number", "D50 by number", um, 1e6},
-          {"d90_number", "D90 by number", um, 1e6},
-          {"mean_diameter", "mean diameter by number", um, 1e6},
-          {"sauter_diameter", "Sauter diameter D[3,2]", um, 1e6},
-          {"mass_diameter", "diameter D[4,3]", um, 1e6},
-          {"coordination_number", "coordination number", ""},
-          {"rattler_fraction", "share of rattlers", ""},
-          {"segregation_index", "segregation index", ""},
-          {"lacey_index", "Lacey index", ""},
-          {"heap_angle_accumulation", "heap angle, accumulation", "deg"},
-          {"heap_angle_deposition", "heap angle, deposition", "deg"},
-          {"settled_height", "settled height of the feed", um, 1e6},
-          {"settled_density", "settled density of the feed", ""},
-          {"reservoir_mean_diameter", "mean diameter left in the reservoir", um, 1e6},
-          {"reservoir_mass_ratio", "mass left in the reservoir over before", ""},
-          {"blade_force", "largest force on the blade", "mN", 1e3},
-          {"absorptivity", "absorptivity", ""},
-          {"melted_mass", "melted mass", "\xc2\xb5g", 1e9},
-          {"part_relative_density", "relative density of the part", ""}};
-}
 
 std::vector<Quantity> bin_quantities() {
   return {{"relative_density", "relative density", ""},
@@ -71,19 +31,11 @@ std::vector<Quantity> bin_quantities() {
           {"volume_fraction_nominal", "volume fraction, nominal", ""}};
 }
 
-double number(json const& from, std::string const& key) {
-  auto const found = from.find(key);
-  return found != from.end() ? number_or_nan(*found) : std::numeric_limits<double>::quiet_NaN();
-}
-
-double value(json const& from, Quantity const& q) { return q.scale * number(from, q.key); }
-double interval(json const& from, Quantity const& q) { return q.scale * number(from, q.key + "_u_bed"); }
-
-std::string title_of(Quantity const& q) { return q.unit.empty() ? q.label : fmt::format("{} [{}]", q.label, q.unit); }
+double value(json const& from, Quantity const& q) { return q.scale * figure_in(from, q.key); }
+double interval(json const& from, Quantity const& q) { return q.scale * figure_in(from, q.key + "_u_bed"); }
 
 std::string column(Quantity const& q) {
-  std::string const ascii = q.unit == um ? "um" : q.unit == "\xc2\xb5g" ? "ug" : q.unit;
-  std::string const unit = ascii.empty() ? "" : fmt::format(" [{}]", ascii);
+  std::string const unit = column_unit(q);
   return fmt::format("{0}{1},{0}_u_bed{1},{0}_n", q.key, unit);
 }
 
@@ -97,7 +49,7 @@ void add_point(Series& series, double x, json const& from, Quantity const& q) {
 /// The quantity in every bin; of many layers the first, the last and some between.
 Series profile(json const& layer, Quantity const& q) {
   Series series{.name = fmt::format("layer {}", layer["layer"].get<int>()), .x = {}, .y = {}};
-  for (json const& bin : layer["bins"]) add_point(series, 1e6 * number(bin, "x"), bin, q);
+  for (json const& bin : layer["bins"]) add_point(series, 1e6 * figure_in(bin, "x"), bin, q);
   return series;
 }
 
@@ -120,7 +72,7 @@ std::string trends(json const& layers) {
   for (Quantity const& q : layer_quantities()) {
     LinePlot plot{
         .x_label = "layer", .y_label = title_of(q), .series = {{}}, .whole_x = true, .width = 420, .height = 250};
-    for (json const& layer : layers) add_point(plot.series[0], number(layer, "layer"), layer, q);
+    for (json const& layer : layers) add_point(plot.series[0], figure_in(layer, "layer"), layer, q);
     bool const measured = std::ranges::any_of(plot.series[0].y, [](double y) { return std::isfinite(y); });
     if (measured) figures += figure(line_plot(plot), "", "layers.csv");
   }
@@ -156,7 +108,7 @@ std::string cards(json const& last) {
         "<div class=\"card\"><h3>{}</h3><p class=\"value\">{} <span class=\"unit\">{}</span></p><p "
         "class=\"note\">layer {}, {:.0f} seeds</p></div>\n",
         q.label, with_uncertainty(value(last, q), interval(last, q)), q.unit, last["layer"].get<int>(),
-        number(last, q.key + "_n"));
+        figure_in(last, q.key + "_n"));
   }
   return "<div class=\"cards\">\n" + all + "</div>\n";
 }
@@ -196,7 +148,7 @@ void write_table(std::filesystem::path const& path, std::string header, std::vec
   for (auto const& [place, from] : rows) {
     std::vector<double> values = place;
     for (Quantity const& q : quantities)
-      values.insert(values.end(), {value(*from, q), interval(*from, q), number(*from, q.key + "_n")});
+      values.insert(values.end(), {value(*from, q), interval(*from, q), figure_in(*from, q.key + "_n")});
     csv.row(values);
   }
   csv.write(path);
@@ -205,8 +157,9 @@ void write_table(std::filesystem::path const& path, std::string header, std::vec
 void write_csv(std::filesystem::path const& folder, json const& layers) {
   std::vector<std::pair<std::vector<double>, json const*>> by_layer, by_bin;
   for (json const& layer : layers) {
-    by_layer.push_back({{number(layer, "layer")}, &layer});
-    for (json const& bin : layer["bins"]) by_bin.push_back({{number(layer, "layer"), 1e6 * number(bin, "x")}, &bin});
+    by_layer.push_back({{figure_in(layer, "layer")}, &layer});
+    for (json const& bin : layer["bins"])
+      by_bin.push_back({{figure_in(layer, "layer"), 1e6 * figure_in(bin, "x")}, &bin});
   }
   write_table(folder / "layers.csv", "layer", layer_quantities(), by_layer);
   write_table(folder / "profiles.csv", "layer,x [um]", bin_quantities(), by_bin);
