@@ -16,6 +16,7 @@ constexpr double memory_per_cell = 150;    // of the heat grid, about [bytes]
 
 // What one thread of a processor of about 3 GHz does in a second, with everything that comes with it.
 constexpr double grain_steps_per_second = 6e6, rays_per_second = 1e6, cell_steps_per_second = 1.5e8;
+constexpr double time_for_files = 0.2;  // and the page of a case [s]
 
 bool spreads(Case const& checked) {
   return checked.has_machine() && checked.process != Process::calibrating &&
@@ -99,7 +100,7 @@ Cost estimate_cost(Case const& checked, bool bed_is_there) {
   }
   auto const many = [](std::int64_t n) { return static_cast<double>(n); };
   cost.memory = memory_per_grain * many(cost.particles) + memory_per_cell * many(cost.cells);
-  cost.wall_time = many(cost.particles) * 1.5 * many(cost.time_steps) / grain_steps_per_second +
+  cost.wall_time = time_for_files + many(cost.particles) * 1.5 * many(cost.time_steps) / grain_steps_per_second +
                    many(cost.rays) / rays_per_second + many(cost.cells) * many(cost.heat_steps) / cell_steps_per_second;
   return cost;
 }
