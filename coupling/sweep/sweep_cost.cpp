@@ -31,7 +31,8 @@ std::vector<Cost> costs_of(SweepPlan const& plan) {
 
 std::string cost_table(SweepPlan const& plan, std::filesystem::path const& folder) {
   std::vector<Cost> const costs = costs_of(plan);
-  std::vector<CaseRecord> const records = read_records(plan, folder);
+  std::vector<CaseRecord> const records =
+      folder.empty() ? std::vector<CaseRecord>(plan.cases.size()) : read_records(plan, folder);
   std::string text = fmt::format("{:>5} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7} {:>11}  settings\n", "case", "grains",
                                  "DEM steps", "rays", "cells", "heat steps", "MB", "time");
   double left = 0, memory = 0, spent = 0, foreseen = 0;

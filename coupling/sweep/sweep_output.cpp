@@ -142,6 +142,7 @@ void write_sweep(SweepPlan const& plan, std::vector<CaseRecord> const& records, 
   write_file(folder / "summary.json", summary_of(plan, records, summaries).dump(1) + "\n");
   write_cases(plan, records, summaries, table, folder / "cases.csv");
   write_points(plan, table, folder / "points.csv");
+  write_windows(plan, table, folder);
   write_file(folder / "report.html", sweep_page(plan, records, table));
 }
 

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
+#include "core/write_file.hpp"
 #include "coupling/program_version.hpp"
 #include "coupling/report/html.hpp"
 #include "coupling/report/page.hpp"
+#include "coupling/report/processing_window.hpp"
 #include "coupling/report/svg_plot.hpp"
 #include "coupling/report/svg_scatter.hpp"
 #include "coupling/sweep/sweep_run.hpp"
@@ -17,7 +18,7 @@
 namespace layerloop::coupling {
 namespace {
 
-constexpr std::size_t most_series = 6;
+constexpr std::size_t most_series = 6, most_windows = 4;
 
 std::int64_t count_of(std::vector<CaseRecord> const& records, CaseState state) {
   return std::ranges::count(records, state, &CaseRecord::state);
@@ -39,34 +40,45 @@ std::string axis_label(SweptKey const& key) {
 
 double shown(SweptKey const& key, SweptValue const& value) { return value.value * shown_unit(key.dimension).scale; }
 
-/// What a point has for the keys but one, in words.
-std::string others_of(SweepPlan const& plan, SweepCase const& one, std::size_t key) {
+/// What a point has for the other keys, in words; the name of a key where there are several.
+std::string others_of(SweepPlan const& plan, SweepCase const& one, std::vector<std::string> const& but) {
+  bool const several = plan.keys.size() > but.size() + 1;
   std::string words;
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
-    if (k == key) continue;
+    if (std::ranges::find(but, plan.keys[k].name) != but.end()) continue;
     SweptValue const& value = one.values[k];
     bool const number = plan.keys[k].is_number && std::isfinite(value.value);
     std::string const name = plan.keys[k].name.substr(plan.keys[k].name.rfind('.') + 1);
-    words += (words.empty() ? "" : ", ") + name + " " +
-             (number ? format_quantity(value.value, plan.keys[k].dimension) : value.text);
+    words += fmt::format("{}{}{}", words.empty() ? "" : ", ", several ? name + " " : "",
+                         number ? format_quantity(value.value, plan.keys[k].dimension) : value.text);
   }
   return words;
 }
 
-/// Points that differ in one key only make a line.
-std::map<std::string, std::vector<SweepCase const*>> lines_along(SweepPlan const& plan, std::size_t key) {
-  std::map<std::string, std::vector<SweepCase const*>> lines;
-  for (SweepCase const* one : first_cases(plan)) lines[others_of(plan, *one, key)].push_back(one);
-  for (auto& [name, line] : lines)
-    std::ranges::stable_sort(line, {}, [&](SweepCase const* one) { return one->values[key].value; });
+/// Points that differ in one key only.
+struct Line {
+  std::string others;  ///< what they share, in words
+  std::vector<SweepCase const*> points;
+};
+
+std::vector<Line> lines_along(SweepPlan const& plan, std::size_t key) {
+  std::vector<Line> lines;
+  for (SweepCase const* one : first_cases(plan)) {
+    std::string const others = others_of(plan, *one, {plan.keys[key].name});
+    auto line = std::ranges::find(lines, others, &Line::others);
+    if (line == lines.end()) line = lines.insert(line, Line{others, {}});
+    line->points.push_back(one);
+  }
+  for (Line& line : lines)
+    std::ranges::stable_sort(line.points, {}, [&](SweepCase const* one) { return one->values[key].value; });
   return lines;
 }
 
 std::string along(SweepPlan const& plan, SweepTable const& table, std::size_t key, std::size_t quantity) {
   LinePlot plot{.x_label = axis_label(plan.keys[key]), .y_label = title_of(table.quantities[quantity]), .series = {}};
-  for (auto const& [name, line] : lines_along(plan, key)) {
-    Series series{.name = name, .x = {}, .y = {}};
-    for (SweepCase const* one : line) {
+  for (Line const& line : lines_along(plan, key)) {
+    Series series{.name = line.others, .x = {}, .y = {}};
+    for (SweepCase const* one : line.points) {
       Sample const& sample = table.points[one->point][quantity];
       series.x.push_back(shown(plan.keys[key], one->values[key]));
       series.y.push_back(sample.mean);
@@ -74,6 +86,7 @@ std::string along(SweepPlan const& plan, SweepTable const& table, std::size_t ke
     }
     plot.series.push_back(std::move(series));
   }
+  if (plot.series.size() > 4) plot.width = 620;  // room for the names
   return line_plot(plot);
 }
 
@@ -116,11 +129,62 @@ std::string trends(SweepPlan const& plan, SweepTable const& table) {
     }
   }
   if (figures.empty()) return "";
-  return fmt::format("<p>{}</p>\n<div class=\"pairs\">{}</div>\n",
+  std::string lines;
+  for (std::size_t k = 0; in_lines && k < plan.keys.size(); ++k) {
+    if (k != keys.front())
+      lines += fmt::format("{}<code>{}</code>", lines.empty() ? " Lines: equal " : ", ", plan.keys[k].name);
+  }
+  if (!lines.empty()) lines += ".";
+  return fmt::format("<p>{}{}</p>\n<div class=\"pairs\">{}</div>\n",
                      plan.replicates > 1
                          ? fmt::format("Means over {} seeds with their 95 % t-interval.", plan.replicates)
                          : "One seed a point: there is nothing that error bars could be made of.",
-                     figures);
+                     lines, figures);
+}
+
+struct Window {
+  std::string others;  ///< what its points share beside power and speed, in words
+  ProcessingWindow map;
+};
+
+/// Power and speed swept over tracks: what their pools mean for parts, a map for every combination of other keys.
+std::vector<Window> windows_of(SweepPlan const& plan, SweepTable const& table) {
+  auto const key = [&](char const* name) { return std::ranges::find(plan.keys, name, &SweptKey::name); };
+  auto const quantity = [&](char const* name) {
+    return std::ranges::find(table.quantities, name, &ShownQuantity::key) - table.quantities.begin();
+  };
+  auto const width = static_cast<std::size_t>(quantity("pool.width")),
+             depth = static_cast<std::size_t>(quantity("pool.depth"));
+  if (key("laser.power") == plan.keys.end() || key("scan.scan_speed") == plan.keys.end()) return {};
+  if (std::max(width, depth) == table.quantities.size()) return {};
+  std::vector<Window> windows;
+  for (SweepCase const* one : first_cases(plan)) {
+    Case const& checked = one->checked;
+    bool const powder = spreads_first(plan.verb, checked) || plan.verb == Verb::run;
+    double const hatch = plan.hatch_spacing > 0 ? plan.hatch_spacing : checked.scan.hatch_spacing,
+                 layer = plan.layer_thickness > 0 ? plan.layer_thickness : checked.machine.layer_thickness;
+    double const w = 1e-6 * table.points[one->point][width].mean, d = 1e-6 * table.points[one->point][depth].mean;
+    if (!(hatch > 0) || !(layer > 0) || !std::isfinite(w) || !std::isfinite(d)) continue;
+    std::string const others = others_of(plan, *one, {"laser.power", "scan.scan_speed"});
+    auto at = std::ranges::find(windows, others, &Window::others);
+    if (at == windows.end()) {
+      at = windows.insert(at, Window{others, {}});
+      at->map.hatch_spacing = hatch;
+      at->map.layer_thickness = layer;
+      at->map.pool_origin =
+          fmt::format("<code>layerloop {}</code>{}", name_of(plan.verb), others.empty() ? "" : ", " + escape(others));
+    }
+    at->map.points.push_back({checked.laser.power, checked.scan.scan_speed, w, d + (powder ? layer : 0)});
+  }
+  return windows;
+}
+
+std::string window_figures(SweepPlan const& plan, SweepTable const& table) {
+  std::string figures;
+  std::vector<Window> const windows = windows_of(plan, table);
+  for (std::size_t k = 0; k < std::min(windows.size(), most_windows); ++k)
+    figures += processing_window_figure(windows[k].map, fmt::format("window_{}.csv", k + 1));
+  return figures;
 }
 
 std::string point_table(SweepPlan const& plan, SweepTable const& table) {
@@ -132,8 +196,8 @@ std::string point_table(SweepPlan const& plan, SweepTable const& table) {
     rows += "<tr>";
     for (std::size_t k = 0; k < plan.keys.size(); ++k) {
       bool const number = plan.keys[k].is_number && std::isfinite(one->values[k].value);
-      rows += fmt::format("<td>{}</td>",
-                          number ? significant(shown(plan.keys[k], one->values[k]), 4) : escape(one->values[k].text));
+      rows += fmt::format("<td>{}</td>", number ? fmt::format("{:.5g}", shown(plan.keys[k], one->values[k]))
+                                                : escape(one->values[k].text));
     }
     for (std::size_t q = 0; q < table.quantities.size(); ++q) {
       Sample const& sample = table.points[one->point][q];
@@ -179,6 +243,12 @@ std::string cards(SweepPlan const& plan, std::vector<CaseRecord> const& records)
 
 }  // namespace
 
+void write_windows(SweepPlan const& plan, SweepTable const& table, std::filesystem::path const& folder) {
+  std::vector<Window> const windows = windows_of(plan, table);
+  for (std::size_t k = 0; k < std::min(windows.size(), most_windows); ++k)
+    write_file(folder / fmt::format("window_{}.csv", k + 1), processing_window_csv(windows[k].map));
+}
+
 std::string sweep_page(SweepPlan const& plan, std::vector<CaseRecord> const& records, SweepTable const& table) {
   Page page{.title = plan.name,
             .version = program_version(),
@@ -186,6 +256,7 @@ std::string sweep_page(SweepPlan const& plan, std::vector<CaseRecord> const& rec
             .cards = cards(plan, records),
             .seed = plan.cases.front().checked.seed,
             .files = "; each case has a folder of its own, with its own report"};
+  page.add("window", "Processing window", window_figures(plan, table));
   page.add("trends", "What depends on what", trends(plan, table));
   page.add("points", "Point by point", point_table(plan, table));
   page.add("cases", "Every case", case_rows(plan, records));

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,5 +11,8 @@ namespace layerloop::coupling {
 /// report.html of a sweep: every quantity against what was varied, with error bars over the seeds, and every case one
 /// click away.
 std::string sweep_page(SweepPlan const& plan, std::vector<CaseRecord> const& records, SweepTable const& table);
+
+/// window_N.csv beside the page, one for each processing window on it. \throws FileError
+void write_windows(SweepPlan const& plan, SweepTable const& table, std::filesystem::path const& folder);
 
 }  // namespace layerloop::coupling

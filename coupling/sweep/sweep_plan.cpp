@@ -71,7 +71,8 @@ class SweepReader {
   void report(Place const& place, std::string const& message) { faults_.push_back({place, message}); }
 
   void read() {
-    std::vector<std::string> const known{"verb", "design", "cases", "replicates", "seed", "vary"};
+    std::vector<std::string> const known{"verb", "design",        "cases",           "replicates",
+                                         "seed", "hatch_spacing", "layer_thickness", "vary"};
     for (auto const& [key, entry] : settings_) {
       if (std::ranges::find(known, key) == known.end())
         report(entry.place, fmt::format("unknown key \"{}\" in [sweep] (known: {}){}", key, fmt::join(known, ", "),
@@ -82,6 +83,8 @@ class SweepReader {
     plan.design = static_cast<SweepDesign>(word("design", design_names(), 0, false));
     plan.replicates = whole("replicates", 1, 1, 10000);
     seed = static_cast<std::uint64_t>(whole("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+    plan.hatch_spacing = length("hatch_spacing");
+    plan.layer_thickness = length("layer_thickness");
     if (fills_space(plan.design)) wanted = whole("cases", 0, 1, most_cases);
     if (!fills_space(plan.design) && settings_.contains("cases"))
       report(settings_["cases"].place,
@@ -121,6 +124,28 @@ class SweepReader {
     return fallback;
   }
 
+  double length(std::string const& key) {
+    auto const entry = settings_.find(key);
+    if (entry == settings_.end()) return 0;
+    try {
+      double const value = number_of(entry->second.value, Dimension::length);
+      if (value > 1e-6 && value < 1e-2) return value;
+      report(entry->second.place,
+             fmt::format("{} = {} (must lie between 1 um and 1 cm)", key, format_quantity(value, Dimension::length)));
+    } catch (InputError const& fault) {
+      report(entry->second.place, fmt::format("{}: {}", key, fault.what()));
+    }
+    return 0;
+  }
+
+  /// A plain number is in SI. Not a number: a list.
+  static double number_of(TomlValue const& item, Dimension dimension) {
+    if (auto const* const number = std::get_if<double>(&item.content)) return *number;
+    if (auto const* const whole = std::get_if<std::int64_t>(&item.content)) return static_cast<double>(*whole);
+    if (auto const* const text = std::get_if<std::string>(&item.content)) return parse_quantity(*text, dimension);
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
   void read_key(TomlEntry const& entry) {
     CaseKey const* const row = case_key(entry.key);
     if (!row)
@@ -145,12 +170,8 @@ class SweepReader {
   }
 
   static SweptValue value_of(TomlValue const& item, CaseKey const& row) {
-    SweptValue value{text_of(item), std::numeric_limits<double>::quiet_NaN()};
-    if (!takes_number(row)) return value;
-    if (auto const* const number = std::get_if<double>(&item.content)) value.value = *number;
-    if (auto const* const whole = std::get_if<std::int64_t>(&item.content)) value.value = static_cast<double>(*whole);
-    if (std::holds_alternative<std::string>(item.content)) value.value = parse_quantity(value.text, row.dimension);
-    return value;
+    return {text_of(item),
+            takes_number(row) ? number_of(item, row.dimension) : std::numeric_limits<double>::quiet_NaN()};
   }
 
   void check_range(TomlEntry const& entry, CaseKey const& row, SweptKey const& key) {

@@ -42,12 +42,14 @@ struct SweepPlan {
   std::int64_t replicates = 1;
   std::vector<SweptKey> keys;
   std::size_t points = 0;
-  std::vector<SweepCase> cases;  ///< point by point, in each its seeds
+  std::vector<SweepCase> cases;                   ///< point by point, in each its seeds
+  double hatch_spacing = 0, layer_thickness = 0;  ///< of the processing window [m]; 0: as the cases say
 };
 
 /// Reads a case file with a table [sweep] and checks every case. Keys of [sweep]: verb, design, cases (of a
-/// space-filling design), replicates, seed (of the design); of [sweep.vary]: keys of the case with a list of values.
-/// `overrides` as for read_case. \throws InputError with every fault at its place; FileError
+/// space-filling design), replicates, seed (of the design), hatch_spacing and layer_thickness (that tracks on a plate
+/// are judged for); of [sweep.vary]: keys of the case with a list of values. `overrides` as for read_case. \throws
+/// InputError with every fault at its place; FileError
 SweepPlan read_sweep(std::filesystem::path const& path, std::vector<std::string> const& overrides);
 
 /// The plan with further points, each with all replicates; `points`: one value a key. \throws InputError
