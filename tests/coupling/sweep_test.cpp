@@ -8,6 +8,7 @@
 #include "coupling/file_lock.hpp"
 #include "coupling/melt_study.hpp"
 #include "coupling/sweep/sweep_cost.hpp"
+#include "tests/plate_track.hpp"
 #include "coupling/sweep/sweep_run.hpp"
 
 namespace layerloop::coupling {
@@ -16,63 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::string const track = R"([powder]
-material = "316L"
-[laser]
-power = "60 W"
-absorptivity = 0.3
-wavelength = "1070 nm"
-spot_diameter = "60 um"
-spot_definition = "1/e2"
-[scan]
-kind = "track"
-scan_speed = "0.5 m/s"
-track_length = "150 um"
-[heat]
-cell_size = "10 um"
-size = ["350 um", "210 um", "90 um"]
-ambient_temperature = "298 K"
-[sweep]
-verb = "melt"
-)";
+std::string const track = plate_track + "ambient_temperature = \"298 K\"\n[sweep]\nverb = \"melt\"\n";
 
-std::string const bed = R"([case]
-seed = 5
-[powder]
-material = "IN718"
-basis = "number"
-diameters = ["21 um", "25 um"]
-fractions = [0.5, 0.5]
-particles = 60
-[contact]
-youngs_modulus = "5 MPa"
-poisson_ratio = 0.3
-restitution = 0.7
-sliding_friction = 0.7
-rolling_friction = 0.15
-cohesion = "none"
-[machine]
-layer_thickness = "50 um"
-recoating_speed = "150 mm/s"
-accumulation_length = "150 um"
-accumulation_depth = "40 um"
-gap_length = "50 um"
-deposition_length = "150 um"
-width = "130 um"
-blade_width = "50 um"
-edge_radius = "5 um"
-[laser]
-wavelength = "1070 nm"
-[optics]
-uniform_beam = true
-[absorb]
-target_standard_error = 0.01
-[run]
-bins = 5
-pictures = false
-[sweep]
-verb = "absorb"
-)";
+/// A layer of powder under even light.
+std::string layer() {
+  return read_file(fs::path(LAYERLOOP_SOURCE_DIR) / "tests/loop/spread_small.toml") +
+         "[laser]\nwavelength = \"1070 nm\"\n[optics]\nuniform_beam = true\n[absorb]\ntarget_standard_error = 0.01\n"
+         "[sweep]\nverb = \"absorb\"\n";
+}
 
 /// A sweep file in a folder that goes away.
 struct Folder {
@@ -226,9 +178,10 @@ TEST(Sweep, LeavesACaseToTheProcessThatHoldsItsLock) {
 }
 
 TEST(Sweep, OneBedServesEveryLight) {
-  Folder const folder(bed + "[sweep.vary]\noptics.grey_reflectance = [0.5, 0.7]\n");
-  EXPECT_NE(cost_table(folder.plan(), folder.options().folder).find("2 of 2 cases to do"), std::string::npos);
-  run_sweep(folder.plan(), folder.options(), Communicator());
+  Folder const folder(layer() + "[sweep.vary]\noptics.grey_reflectance = [0.5, 0.7]\n");
+  SweepPlan const plan = folder.plan({"run.layers=1", "run.replicates=1"});
+  EXPECT_NE(cost_table(plan, folder.options().folder).find("2 of 2 cases to do"), std::string::npos);
+  run_sweep(plan, folder.options(), Communicator());
   json const all = folder.summary();
   EXPECT_GT(all["cases"][0]["absorptivity"].get<double>(), all["cases"][1]["absorptivity"].get<double>());
   std::size_t beds = 0;

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "core/write_file.hpp"
 #include "coupling/melt_study.hpp"
-#include "plate_track.hpp"
+#include "tests/plate_track.hpp"
 #include "validation/stage_model.hpp"
 #include "validation/study_file.hpp"
 

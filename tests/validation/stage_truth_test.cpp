@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/write_file.hpp"
-#include "plate_track.hpp"
+#include "tests/plate_track.hpp"
 #include "validation/blind/stage_design.hpp"
 #include "validation/blind/world.hpp"
 #include "validation/stage_model.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace layerloop::validation {
+namespace layerloop {
 
 /// A track on a plate, melted in a blink. [heat] stands last, so that a test may go on with it.
 inline std::string const plate_track = R"([powder]
@@ -21,4 +21,4 @@ cell_size = "7.5 um"
 size = ["450 um", "210 um", "90 um"]
 )";
 
-}  // namespace layerloop::validation
+}  // namespace layerloop
