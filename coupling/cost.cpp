@@ -15,7 +15,7 @@ constexpr double memory_per_grain = 1000;  // with its neighbours and springs, a
 constexpr double memory_per_cell = 150;    // of the heat grid, about [bytes]
 
 // What one thread of a processor of about 3 GHz does in a second, with everything that comes with it.
-constexpr double grain_steps_per_second = 6e6, rays_per_second = 1e6, cell_steps_per_second = 1.5e8;
+constexpr double grain_steps_per_second = 1e7, rays_per_second = 1e6, cell_steps_per_second = 1.5e8;
 constexpr double time_for_files = 0.2;  // and the page of a case [s]
 
 bool spreads(Case const& checked) {
@@ -24,10 +24,11 @@ bool spreads(Case const& checked) {
          !(checked.process == Process::absorbing && checked.absorb.bed != AbsorbingBed::spread);
 }
 
-void add_spreading(Case const& checked, Cost& cost) {
+/// \param layers  that are still to be spread
+void add_spreading(Case const& checked, std::int64_t layers, Cost& cost) {
   cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose_count(checked);
   double const sweep = dem::blade_stroke(checked.machine) / checked.machine.recoating_speed;
-  cost.time_steps = checked.run.layers * std::llround(sweep / dem::motion_of(checked).time_step);
+  cost.time_steps = layers * std::llround(sweep / dem::motion_of(checked).time_step);
 }
 
 /// Piles and plates move until they rest: the longest time that they may take is not reached as a rule.
@@ -91,7 +92,8 @@ std::int64_t dose_count(Case const& checked) {
 Cost estimate_cost(Case const& checked, bool bed_is_there) {
   Cost cost;
   if (checked.process == Process::calibrating) add_calibration(checked, cost);
-  if (spreads(checked) && !bed_is_there) add_spreading(checked, cost);
+  std::int64_t const there = !bed_is_there ? 0 : checked.process == Process::melting ? 1 : checked.run.layers;
+  if (spreads(checked) && there < checked.run.layers) add_spreading(checked, checked.run.layers - there, cost);
   bool const melts = checked.has_laser() && checked.process != Process::absorbing;
   if (melts || checked.process == Process::absorbing) cost.rays = rays_of(checked);
   if (melts) {

@@ -16,7 +16,7 @@ struct Cost {
   double wall_time = 0;         ///< on one thread, within a factor of three or so [s]
 };
 
-/// Of the process of the case, whose first layer need not be spread again if `bed_is_there`.
+/// Of the process of the case. If `bed_is_there`, its bed need not be spread again; of a layer loop the first layer.
 Cost estimate_cost(Case const& checked, bool bed_is_there = false);
 
 /// Grains fed before layer 2, 3, ...: dose_factor nominal layers packed to 60 %, in grains of the mean volume.

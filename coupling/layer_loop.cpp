@@ -20,6 +20,7 @@
 #include "coupling/layer_output.hpp"
 #include "coupling/ledger.hpp"
 #include "coupling/material_mass.hpp"
+#include "coupling/melt_bed.hpp"
 #include "coupling/melt_layer.hpp"
 #include "coupling/part_surface_cgal.hpp"
 #include "coupling/scan_path.hpp"
@@ -121,6 +122,18 @@ void spread(Run const& run, BuildState& build, LayerRecord& layer) {
     layer.materials = material_shares(build.bed, before.grains, build.record.mass_fed_by_material, run.checked);
 }
 
+/// The first layer as it was dosed and spread before, for another laser.
+void take_first_layer(Run const& run, BuildState& build, LayerRecord& layer) {
+  Case first = run.checked;
+  first.run.layers = 1;
+  BuildState spread = spread_layers(first, run.options.first_layer, run.comm, true);
+  build.bed = std::move(spread.bed);
+  build.next_id = spread.next_id;
+  build.record.ledger = spread.record.ledger;
+  build.record.mass_fed_by_material = spread.record.mass_fed_by_material;
+  layer = spread.record.layers.back();
+}
+
 /// Pictures are drawn by the root rank from the scene that is traced.
 void picture(Run const& run, BuildState& build, raytrace::BedScene const& scene, std::initializer_list<View> views,
              LayerRecord& layer) {
@@ -188,8 +201,12 @@ void build_layer(Run const& run, BuildState& build) {
   LayerRecord layer;
   layer.layer = ++build.layers_done;
   lower(run, build);
-  dose(run, build);
-  spread(run, build, layer);
+  if (layer.layer == 1 && !run.options.first_layer.empty()) {
+    take_first_layer(run, build, layer);
+  } else {
+    dose(run, build);
+    spread(run, build, layer);
+  }
   if (!run.checked.has_laser()) show(run, build, {View::whole_machine, View::oblique, View::from_above}, layer);
   if (run.checked.has_part()) consolidate(run, build, layer);
   build.record.layers.push_back(layer);

@@ -10,10 +10,11 @@
 namespace layerloop::coupling {
 
 struct RunOptions {
-  std::filesystem::path folder;    ///< results go here; made when missing
-  bool resume = false;             ///< go on from the newest good checkpoint in the folder
-  bool quiet = false;              ///< no progress
-  std::vector<BedFormat> exports;  ///< in which every bed is written besides bed_NNNN.h5
+  std::filesystem::path folder;            ///< results go here; made when missing
+  bool resume = false;                     ///< go on from the newest good checkpoint in the folder
+  bool quiet = false;                      ///< no progress
+  std::vector<BedFormat> exports;          ///< in which every bed is written besides bed_NNNN.h5
+  std::filesystem::path first_layer = {};  ///< folder where the first layer was spread before; empty: it is spread
 };
 
 /// The layer loop: dose, spread, measure, trace, heat, consolidate, mesh, lower, `run.layers` times; without a laser

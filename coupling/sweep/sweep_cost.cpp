@@ -20,8 +20,10 @@ std::vector<Cost> costs_of(SweepPlan const& plan) {
   std::vector<Cost> costs;
   std::set<std::string> spread;
   for (SweepCase const& one : plan.cases) {
-    bool const shared = plan.verb != Verb::spread && spreads_first(plan.verb, one.checked);
-    bool const there = shared && !spread.insert(hash_of(content_of(what_spreading_reads(one.checked)))).second;
+    Case bed = what_spreading_reads(one.checked);
+    if (plan.verb == Verb::run) bed.run.layers = 1;
+    bool const shared = plan.verb == Verb::run || (plan.verb != Verb::spread && spreads_first(plan.verb, one.checked));
+    bool const there = shared && !spread.insert(hash_of(content_of(bed))).second;
     costs.push_back(estimate_cost(one.checked, there));
   }
   return costs;

@@ -63,7 +63,14 @@ std::string content_key(Verb verb, Case const& checked) { return hash_of(name_of
 /// Runs the verb of a case, results in its own folder.
 void compute(Verb verb, Case const& checked, fs::path const& folder, bool again, BedCache const& beds,
              Communicator const& comm) {
-  fs::path const bed = verb != Verb::spread && spreads_first(verb, checked) ? beds.spread(checked, comm).folder : "";
+  fs::path bed;
+  if (verb == Verb::run) {
+    Case first = checked;
+    first.run.layers = 1;
+    bed = beds.spread(first, comm).folder;
+  } else if (verb != Verb::spread && spreads_first(verb, checked)) {
+    bed = beds.spread(checked, comm).folder;
+  }
   switch (verb) {
     case Verb::spread:
     case Verb::run: {
@@ -71,6 +78,7 @@ void compute(Verb verb, Case const& checked, fs::path const& folder, bool again,
       options.folder = folder;
       options.resume = again;
       options.quiet = true;
+      options.first_layer = bed;
       run_layer_loop(checked, options, comm);
       return;
     }

@@ -90,6 +90,22 @@ class Sweep(unittest.TestCase):
         self.assertEqual(positions(cut), positions(whole))
         self.assertGreater(len(positions(whole)), 0)
 
+    def test_a_run_on_a_first_layer_from_the_cache_is_the_same_to_the_bit(self):
+        loops = self.folder / "loops.toml"
+        loops.write_text((HERE / "small.toml").read_text() +
+                         "[sweep]\nverb = \"run\"\n[sweep.vary]\nlaser.power = [\"60 W\", \"80 W\"]\n")
+        out, alone = self.folder / "swept", self.folder / "loop"
+        self.assertEqual(layerloop("sweep", loops, "-o", out, "--quiet").returncode, 0)
+        self.assertEqual(layerloop("run", HERE / "small.toml", "-o", alone, "--quiet").returncode, 0)
+        self.assertEqual(len([path for path in (out / "beds").iterdir() if path.is_dir()]), 1)
+        summaries = [json.loads((folder / "summary.json").read_text()) for folder in (out / "case_0002", alone)]
+        for summary in summaries:
+            del summary["wall_time"]
+        self.assertEqual(*summaries)
+        for name in ("bed_0001.h5", "bed_0002.h5"):
+            with h5py.File(out / "case_0002" / name) as swept, h5py.File(alone / name) as single:
+                self.assertEqual(swept["bed/position"][()].tobytes(), single["bed/position"][()].tobytes())
+
     def test_groups_of_ranks_share_the_cases(self):
         alone, shared = self.tracks_alone(), self.folder / "shared"
         done = layerloop("sweep", self.tracks, "-o", shared, "--quiet", "--groups", 2, ranks=2)
@@ -119,4 +135,4 @@ class Sweep(unittest.TestCase):
         self.assertEqual(pools(self.folder / "cluster" / "sweep"), pools(self.tracks_alone()))
 
 
-unittest.main(argv=sys.argv[:1])
+unittest.main(argv=sys.argv[:1] + sys.argv[3:])
