@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
   apps::add_run(program, action);
   apps::add_spread(program, action);
   apps::add_absorb(program, action);
+  apps::add_learn(program, action);
   apps::add_melt(program, action);
   apps::add_sweep(program, action);
   apps::add_bench(program, action);

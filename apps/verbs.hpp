@@ -24,6 +24,7 @@ using Action = std::function<void()>;
 void add_run(CLI::App& program, Action& chosen);
 void add_spread(CLI::App& program, Action& chosen);
 void add_absorb(CLI::App& program, Action& chosen);
+void add_learn(CLI::App& program, Action& chosen);
 void add_melt(CLI::App& program, Action& chosen);
 void add_bench(CLI::App& program, Action& chosen);
 void add_check(CLI::App& program, Action& chosen);

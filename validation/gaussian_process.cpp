@@ -24,7 +24,7 @@ Eigen::MatrixXd Matern::operator()(Eigen::MatrixXd const& a, Eigen::MatrixXd con
                    .square()
                    .matrix();
   Eigen::ArrayXXd const r = (5 * squared.array()).sqrt();
-  return sd * sd * ((1 + r + r.square() / 3) * (-r).exp()).matrix();
+  return (sd * sd * (1 + r + r.square() / 3) * (-r).exp() + level_sd * level_sd).matrix();
 }
 
 GaussianProcess::GaussianProcess(Matern kernel, double mean, Eigen::MatrixXd places, Eigen::VectorXd const& values,
@@ -32,15 +32,22 @@ GaussianProcess::GaussianProcess(Matern kernel, double mean, Eigen::MatrixXd pla
     : kernel_(std::move(kernel)), mean_(mean), places_(std::move(places)), values_(values) {
   Eigen::MatrixXd covariance = kernel_(places_, places_);
   covariance.diagonal() += noise;
-  covariance.diagonal().array() += jitter * kernel_.sd * kernel_.sd;
+  covariance.diagonal().array() += jitter * kernel_.variance();
   factor_.compute(covariance);
   weights_ = factor_.solve((values_.array() - mean_).matrix());
 }
 
 Estimate GaussianProcess::operator()(Eigen::RowVectorXd const& place) const {
   Eigen::VectorXd const shared = kernel_(places_, place);
-  double const variance = kernel_.sd * kernel_.sd - shared.dot(factor_.solve(shared));
+  double const variance = kernel_.variance() - shared.dot(factor_.solve(shared));
   return {mean_ + shared.dot(weights_), std::sqrt(std::max(0.0, variance))};
+}
+
+Joint GaussianProcess::together(Eigen::MatrixXd const& places) const {
+  Eigen::MatrixXd const shared = kernel_(places_, places);
+  Eigen::VectorXd mean = shared.transpose() * weights_;
+  mean.array() += mean_;
+  return {std::move(mean), kernel_(places, places) - shared.transpose() * factor_.solve(shared)};
 }
 
 double GaussianProcess::log_likelihood() const {
@@ -49,18 +56,21 @@ double GaussianProcess::log_likelihood() const {
          0.5 * static_cast<double>(values_.size()) * std::log(2 * std::numbers::pi);
 }
 
-/// With A = C^-1: value minus prediction of a group g is (A_gg)^-1 (A r)_g.
-Eigen::VectorXd GaussianProcess::left_out(std::vector<std::size_t> const& group) const {
+/// With A = C^-1: value minus prediction of a group g is (A_gg)^-1 (A r)_g, and its covariance (A_gg)^-1 (Rasmussen &
+/// Williams, section 5.4.2, for groups).
+LeftOut GaussianProcess::left_out(std::vector<std::size_t> const& group) const {
   Eigen::Index const n = values_.size();
   Eigen::MatrixXd const inverse = factor_.solve(Eigen::MatrixXd::Identity(n, n));
-  Eigen::VectorXd predicted(n);
+  LeftOut predicted{Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (std::size_t const g : std::set(group.begin(), group.end())) {
     std::vector<Eigen::Index> rows;
     for (std::size_t i = 0; i < group.size(); ++i)
       if (group[i] == g) rows.push_back(static_cast<Eigen::Index>(i));
-    Eigen::MatrixXd const own = inverse(rows, rows);
-    Eigen::VectorXd const surprise = own.ldlt().solve(Eigen::VectorXd(weights_(rows)));
-    predicted(rows) = values_(rows) - surprise;
+    Eigen::Index const size = static_cast<Eigen::Index>(rows.size());
+    Eigen::MatrixXd const covariance =
+        Eigen::MatrixXd(inverse(rows, rows)).ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+    predicted.mean(rows) = values_(rows) - covariance * weights_(rows);
+    predicted.sd(rows) = covariance.diagonal().cwiseMax(0).cwiseSqrt();
   }
   return predicted;
 }

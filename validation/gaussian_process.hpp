@@ -9,12 +9,25 @@ namespace layerloop::validation {
 struct Matern {
   double sd = 1;
   Eigen::VectorXd length;
+  double level_sd = 0;  ///< of an unknown constant that the function stands on: level_sd^2 is added
+  double variance() const { return sd * sd + level_sd * level_sd; }  ///< at one place
   /// (rows of a, rows of b); a and b hold one place a row.
   Eigen::MatrixXd operator()(Eigen::MatrixXd const& a, Eigen::MatrixXd const& b) const;
 };
 
 struct Estimate {
   double mean = 0, sd = 0;  ///< sd: of the function itself, without the noise of a reading
+};
+
+/// Several places at once. Shapes: n; (n, n).
+struct Joint {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;  ///< of the function itself
+};
+
+/// Predictions by point; sd: of the reading, its noise included.
+struct LeftOut {
+  Eigen::VectorXd mean, sd;
 };
 
 /// A smooth function known at some places, with noise: mean and covariance of all functions that agree.
@@ -25,8 +38,11 @@ class GaussianProcess {
                   Eigen::VectorXd const& noise);
   Estimate operator()(Eigen::RowVectorXd const& place) const;
   double log_likelihood() const;
-  /// Every value predicted from the points of other groups alone. \param group  by point
-  Eigen::VectorXd left_out(std::vector<std::size_t> const& group) const;
+  /// Mean and covariance at several places (one a row) together.
+  Joint together(Eigen::MatrixXd const& places) const;
+  /// Every value predicted from the points of other groups alone, with the same kernel, in closed form. \param group by
+  /// point
+  LeftOut left_out(std::vector<std::size_t> const& group) const;
   Matern const& kernel() const { return kernel_; }
 
  private:

@@ -1,0 +1,35 @@
+#pragma once
+#include <functional>
+
+#include "validation/learning/acquisition.hpp"
+
+namespace layerloop::validation {
+
+/// One simulation: where, and what came out; not a number when it failed.
+struct Trial {
+  Eigen::RowVectorXd place;
+  double value = 0;
+};
+
+struct LearnPlan {
+  InputBox box;
+  Goal goal = Goal::maximise;
+  Acquisition acquisition = Acquisition::expected_improvement;
+  std::uint64_t seed = 0;
+};
+
+/// Surrogate of the trials that did not fail, of -value where the smallest is wanted. \pre two of them at least
+Surrogate surrogate_of(std::vector<Trial> const& trials, Goal goal);
+
+/// Best value and place, in the sign of the values; of Goal::know the largest.
+Optimum optimum_of(std::vector<Trial> const& trials, LearnPlan const& plan);
+
+/// Where to run next. A trial that failed counts as the worst value seen, so that it is not tried again.
+Eigen::RowVectorXd propose(std::vector<Trial> const& trials, LearnPlan const& plan);
+
+/// Adds what `places` further places give, each chosen by the trials before it. \param simulate  the values at a place,
+/// one a seed
+void learn(std::vector<Trial>& trials, LearnPlan const& plan, std::int64_t places,
+           std::function<std::vector<double>(Eigen::RowVectorXd const&)> const& simulate);
+
+}  // namespace layerloop::validation
