@@ -15,14 +15,18 @@ BedCache::Bed BedCache::spread(Case const& checked, Communicator const& comm) co
   Case const read = what_spreading_reads(checked);
   fs::path const folder = folder_ / hash_of(content_of(read));
   if (!comm.any(!fs::is_directory(folder))) return {folder, false};
+  fs::path const unfinished = folder.string() + ".unfinished", lock = folder.string() + ".lock";
   std::optional<FileLock> alone;
-  if (comm.is_root()) alone.emplace(folder.string() + ".lock", FileLock::Wait::until_free);
-  comm.barrier();
+  if (comm.is_root()) alone.emplace(lock, FileLock::Wait::until_free);
+  if (comm.any(alone && !alone->held()))
+    throw StoppedBySignal("stopped by a signal while another process spreads the bed (as asked) go on with --resume");
   if (!comm.any(!fs::is_directory(folder))) return {folder, false};  // another process was at it
-  fs::path const unfinished = folder.string() + ".unfinished";
   spread_layers(read, unfinished, comm, true);
   comm.barrier();
-  if (comm.is_root()) fs::rename(unfinished, folder);
+  if (comm.is_root()) {
+    fs::rename(unfinished, folder);
+    fs::remove(lock);  // whoever waits for it sees the bed then
+  }
   comm.barrier();
   return {folder, true};
 }

@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "core/error.hpp"
+#include "core/progress.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -22,9 +25,9 @@ int opened(std::filesystem::path const& path) {
 }
 
 bool locked(int file, FileLock::Wait wait) {
-  int const how = LOCK_EX | (wait == FileLock::Wait::no ? LOCK_NB : 0);
-  while (::flock(file, how) != 0) {
-    if (errno != EINTR) return false;
+  while (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EINTR && (wait == FileLock::Wait::no || stop_requested())) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   return true;
 }

@@ -6,7 +6,7 @@ namespace layerloop::coupling {
 /// A file that one process at a time holds (flock). The system lets go of it when the process ends, however it ends.
 class FileLock {
  public:
-  enum class Wait { until_free, no };
+  enum class Wait { until_free, no };  // until it is free or a signal asks to stop
 
   /// \throws FileError  the file cannot be made
   FileLock(std::filesystem::path const& path, Wait wait);
