@@ -59,7 +59,7 @@ std::vector<ShownQuantity> exposure_quantities() {
           {"pool.bead_height", "height of the bead", um, 1e6},
           {"depression_depth", "depth of the vapour depression", um, 1e6},
           {"peak_temperature", "peak temperature", "K"},
-          {"cooling_rate", "cooling rate", "K/s"},
+          {"cooling_rate", "cooling rate", "K/us", 1e-6},
           {"fusion.unmelted_powder", "powder left unmelted", ""},
           {"fusion.overlap_depth", "depth of the pool where tracks meet", um, 1e6},
           {"angle_of_repose", "angle of repose", "deg"},
