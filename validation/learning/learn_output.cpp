@@ -115,7 +115,7 @@ void write_skills(LearnResults const& results, fs::path const& folder) {
                         csv_number(one.output.scale * one.noise_sd), one.output.unit);
   write_file(folder / "surrogates.csv", text);
   if (results.layer_models.empty()) return;
-  text = "output,model,layers," + columns + "\n";
+  text = "output,model,layers," + columns + "\n";  // SI
   for (LayerSkill const& one : results.layer_models) {
     text += fmt::format("{},\"{}\",last,{}\n", one.output, words_of(one.model), csv_skill(one.last, 1));
     if (one.all.n > 0)

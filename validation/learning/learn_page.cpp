@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "coupling/program_version.hpp"
 #include "coupling/report/html.hpp"
@@ -25,6 +24,14 @@ std::string axis_label(coupling::SweptKey const& key) {
   return key.name + (unit.empty() ? "" : " [" + (unit == "um" ? "\xc2\xb5m" : unit) + "]");
 }
 
+/// "layer thickness [um]", which breaks into lines on a card.
+std::string card_label(coupling::SweptKey const& key) {
+  std::string label = axis_label(key);
+  label.erase(0, label.find('.') + 1);
+  std::ranges::replace(label, '_', ' ');
+  return label;
+}
+
 std::string best_word(Goal goal) { return goal == Goal::minimise ? "smallest" : "largest"; }
 
 std::string interval(double low, double high) { return significant(low) + " to " + significant(high); }
@@ -41,7 +48,7 @@ std::string cards(LearnStudy const& study, LearnResults const& results) {
     auto const d = static_cast<Eigen::Index>(k);
     double const scale = coupling::shown_unit(study.plan.keys[k].dimension).scale;
     all +=
-        card(escape(axis_label(study.plan.keys[k])), significant(scale * found.place[d]),
+        card(escape(card_label(study.plan.keys[k])), significant(scale * found.place[d]),
              fmt::format("95 %: {}; looked from {}", interval(scale * found.place_low[d], scale * found.place_high[d]),
                          interval(scale * study.box.low[d], scale * study.box.high[d])));
   }
@@ -156,13 +163,17 @@ std::string surrogate_table(LearnResults const& results) {
 
 std::string layer_table(LearnResults const& results) {
   if (results.layer_models.empty()) return "";
+  std::vector<coupling::ShownQuantity> const outputs = coupling::layer_quantities();
   std::string rows;
-  for (LayerSkill const& one : results.layer_models)
-    rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>{}{}</tr>\n", escape(one.output),
-                        escape(words_of(one.model)), skill_cells(one.last, 1), skill_cells(one.all, 1));
-  return "<p>Each place predicted from the others; SI. Models of roughness and void layer need the layer below, which "
-         "only "
-         "a run tells.</p>\n" +
+  for (LayerSkill const& one : results.layer_models) {
+    auto const output = std::ranges::find(outputs, one.output, &coupling::ShownQuantity::key);
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><th>{}</th>{}{}</tr>\n", escape(coupling::title_of(*output)),
+                        escape(words_of(one.model)), skill_cells(one.last, output->scale),
+                        skill_cells(one.all, output->scale));
+  }
+  return "<p>Each place predicted from the others. Models of roughness and void layer need the layer below, which only "
+         "a "
+         "run tells.</p>\n" +
          table(
              "<th>output</th><th>predicted from</th><th>last layer: error</th><th>Q2</th><th>in 95 %</th><th>all "
              "layers: "
