@@ -77,11 +77,16 @@ double output_of(json const& summary, std::string const& key) {
   return coupling::figure_in(layers != summary.end() && !layers->empty() ? layers->back() : summary, key);
 }
 
-LearnStudy run_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides,
-                        coupling::SweepOptions const& options, Communicator const& comm) {
+LearnStudy read_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
   LearnStudy study{.settings = read_learn(path, overrides), .plan = coupling::read_sweep(path, overrides)};
   study.start = study.plan.points;
   study.box = box_of(study.plan, path);
+  return study;
+}
+
+LearnStudy run_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides,
+                        coupling::SweepOptions const& options, Communicator const& comm) {
+  LearnStudy study = read_learning(path, overrides);
   coupling::run_sweep(study.plan, options, comm);
   read_new_cases(study, options.folder);
   check_start(study);

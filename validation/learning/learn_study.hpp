@@ -24,10 +24,13 @@ struct LearnStudy {
   LearnPlan search() const { return {box, settings.goal, settings.acquisition, settings.seed}; }
 };
 
+/// What is to be run, checked, before any run. \throws as read_sweep and read_learn
+LearnStudy read_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides);
+
 /// Runs the start design and then, one after the other, the places where the acquisition expects most; what lies in the
 /// folder is kept, and since every proposal follows from the results before it, a search that was stopped goes on as
-/// if it had not been. Leaves the folder of a sweep. Collective. \throws as read_sweep, read_learn and run_sweep;
-/// PhysicsError  fewer than two cases of the start design give the output
+/// if it had not been. Leaves the folder of a sweep. Collective. \throws as read_learning and run_sweep; PhysicsError
+/// fewer than two cases of the start design give the output
 LearnStudy run_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides,
                         coupling::SweepOptions const& options, Communicator const& comm);
 
