@@ -47,11 +47,22 @@ Eigen::MatrixXd starts_of(Surrogate const& surrogate, InputBox const& box, std::
   return places;
 }
 
+/// Places in boxes of four sizes around `top`, the largest as far to either side as the limits are apart; what falls
+/// outside lies on the limit, for many a top does.
+Eigen::MatrixXd places_around(Eigen::RowVectorXd const& top, InputBox const& box, std::uint64_t seed) {
+  Eigen::RowVectorXd const range = box.high - box.low;
+  Eigen::MatrixXd places = uniform_places({-range, range}, dense, seed);
+  for (Eigen::Index i = 0; i < dense; ++i)
+    places.row(i) =
+        (top + std::ldexp(1.0, -static_cast<int>(i % 4)) * places.row(i)).cwiseMax(box.low).cwiseMin(box.high);
+  return places;
+}
+
 /// Of many places some that can be the top, as far as the surrogate knows: mean + 3 sd above its highest mean. `top` is
 /// the first of them.
 Eigen::MatrixXd possible_tops(Surrogate const& surrogate, InputBox const& box, Eigen::RowVectorXd const& top,
                               std::uint64_t seed) {
-  Eigen::MatrixXd const all = uniform_places(box, dense, seed);
+  Eigen::MatrixXd const all = places_around(top, box, seed);
   double const highest = surrogate(top).mean;
   Eigen::MatrixXd kept(possible, box.low.size());
   kept.row(0) = top;
