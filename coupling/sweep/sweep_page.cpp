@@ -163,8 +163,12 @@ std::vector<Window> windows_of(SweepPlan const& plan, SweepTable const& table) {
     bool const powder = spreads_first(plan.verb, checked) || plan.verb == Verb::run;
     double const hatch = plan.hatch_spacing > 0 ? plan.hatch_spacing : checked.scan.hatch_spacing,
                  layer = plan.layer_thickness > 0 ? plan.layer_thickness : checked.machine.layer_thickness;
-    double const w = 1e-6 * table.points[one->point][width].mean, d = 1e-6 * table.points[one->point][depth].mean;
-    if (!(hatch > 0) || !(layer > 0) || !std::isfinite(w) || !std::isfinite(d)) continue;
+    std::vector<Sample> const& figures = table.points[one->point];
+    bool const done = std::ranges::any_of(figures, [](Sample const&sample) { return sample.n > 0; }),
+               melts = figures[width].n > 0 && figures[depth].n > 0;
+    if (!(hatch > 0) || !(layer > 0) || !done) continue;
+    double const w = melts ? 1e-6 * figures[width].mean : 0,
+                 d = melts ? 1e-6 * figures[depth].mean + (powder ? layer : 0) : 0;
     std::string const others = others_of(plan, *one, {"laser.power", "scan.scan_speed"});
     auto at = std::ranges::find(windows, others, &Window::others);
     if (at == windows.end()) {
@@ -174,7 +178,7 @@ std::vector<Window> windows_of(SweepPlan const& plan, SweepTable const& table) {
       at->map.pool_origin =
           fmt::format("<code>layerloop {}</code>{}", name_of(plan.verb), others.empty() ? "" : ", " + escape(others));
     }
-    at->map.points.push_back({checked.laser.power, checked.scan.scan_speed, w, d + (powder ? layer : 0)});
+    at->map.points.push_back({checked.laser.power, checked.scan.scan_speed, w, d});
   }
   return windows;
 }

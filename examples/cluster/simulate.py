@@ -23,14 +23,16 @@ class Job:
             start_new_session=True, stdout=log, stderr=log)
 
     def strike(self):
-        """Lets the fate come when its time has come."""
-        if self.fate == "none" or time.monotonic() < self.at or self.process.poll() is not None:
-            return
-        if self.fate == "kill":
+        """Lets the fate come when its time has come. Returns what struck."""
+        struck = self.fate
+        if struck == "none" or time.monotonic() < self.at or self.process.poll() is not None:
+            return "none"
+        if struck == "kill":
             os.killpg(self.process.pid, signal.SIGKILL)
         else:
             os.kill(self.process.pid, signal.SIGUSR1)
         self.fate = "none"
+        return struck
 
 
 def arguments():
@@ -71,7 +73,7 @@ def run(given, environment, count):
     """Runs the queue to its end. Returns what befell the jobs."""
     chance = random.Random(given.seed)
     queue, running = list(range(1, count + 1)), []
-    tally = {"jobs": 0, "kill": 0, "preempt": 0, "twice": 0, "back": 0}
+    tally = {"jobs": 0, "none": 0, "kill": 0, "preempt": 0, "twice": 0, "back": 0}
     ended, begun = set(), time.monotonic()
     with open(given.out / "jobs.log", "ab") as log:
         while queue or running:
@@ -83,9 +85,8 @@ def run(given, environment, count):
                     fate = chance.choice(["kill", "preempt"]) if chance.random() < given.trouble else "none"
                     running.append(Job(index, fate, chance.uniform(0, given.longest), environment, log))
                     tally["jobs"] += 1
-                    tally[fate] = tally.get(fate, 0) + 1
             for job in list(running):
-                job.strike()
+                tally[job.strike()] += 1
                 if job.process.poll() is None:
                     continue
                 running.remove(job)
@@ -134,7 +135,8 @@ def main():
     print(f"{count} cases in {tally['jobs']} jobs, {time.monotonic() - begun:.0f} s: {tally['kill']} killed, "
           f"{tally['preempt']} pre-empted, {tally['twice']} started twice, {tally['back']} went back into the queue")
     print(f"{states.count('done')} done, {states.count('failed')} stopped by a guard of the model, "
-          f"largest number of attempts {max(case['attempts'] for case in summary['cases'])}")
+          f"{sum(case['attempts'] > 1 for case in summary['cases'])} were struck at work and begun again, one of them "
+          f"{max(case['attempts'] for case in summary['cases'])} times in all")
     for complaint in complaints:
         print(complaint)
     print("every case is done once and none is lost" if not complaints else "FAILED")
