@@ -117,11 +117,35 @@ TEST(LearnStudy, SaysWhereTheTableIsWrongBeforeAnythingRuns) {
             std::string::npos);
   EXPECT_NE(typos.find("learn.toml:38:1: unknown key \"run\" in [learn]"), std::string::npos) << typos;
   EXPECT_NE(typos.find("missing key \"runs\" in [learn] (a whole number)"), std::string::npos) << typos;
-  std::string fixed = layers;
-  fixed.replace(fixed.find("design"), std::string::npos, "[sweep.vary]\nmachine.layer_thickness = [\"40 um\"]\n");
-  EXPECT_NE(folder.complaint(fixed + thinnest).find("machine.layer_thickness of [sweep.vary] has no range"),
-            std::string::npos);
+  std::string const listed = layers.substr(0, layers.find("design"));
+  std::string const fixed =
+      listed + "design = \"list\"\n[sweep.vary]\nmachine.layer_thickness = [\"40 um\"]\npowder.particles = [60]\n";
+  std::string const ranges = folder.complaint(fixed + thinnest);
+  EXPECT_NE(ranges.find("toml:32:9: machine.layer_thickness has no range"), std::string::npos) << ranges;
+  std::string const whole =
+      folder.complaint(listed + "design = \"list\"\n[sweep.vary]\npowder.particles = [60, 70]\n" + thinnest);
+  EXPECT_NE(whole.find("toml:32:8: powder.particles is a whole number"), std::string::npos) << whole;
   EXPECT_FALSE(fs::exists(folder.path / "none"));
+}
+
+TEST(LearnStudy, GoesElsewhereWhenAProposedPlaceIsNoGoodCase) {
+  // Ninety grains fill a short or a shallow zone, but in one that is long and deep the blade passes over them.
+  Folder const folder;
+  std::string text = layers.substr(0, layers.find("design"));
+  text.replace(text.find("particles = 60"), 14, "particles = 90");
+  LearnStudy const study = folder.learn(text + R"(design = "list"
+[sweep.vary]
+machine.accumulation_length = ["150 um", "250 um", "180 um"]
+machine.accumulation_depth = ["55 um", "30 um", "40 um"]
+[learn]
+output = "settled_height"
+goal = "know"
+runs = 4
+)",
+                                        "corner");
+  EXPECT_FALSE(study.refused.empty());
+  EXPECT_EQ(study.refused.size() + study.trials.size(), 7U);
+  for (Trial const& trial : study.refused) EXPECT_GT(trial.place[0] * trial.place[1], 8e-9);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct LearnStudy {
   InputBox box = {};                           ///< by key of the plan [SI]
   std::vector<nlohmann::json> summaries = {};  ///< by case; null: failed
   std::vector<Trial> trials = {};              ///< by case
+  std::vector<Trial> refused = {};             ///< proposed places that are no good case
 
   LearnPlan search() const { return {box, settings.goal, settings.acquisition, settings.seed}; }
 };
