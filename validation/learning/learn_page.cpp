@@ -152,7 +152,8 @@ std::string surrogate_table(LearnResults const& results) {
     rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>{}<td>{}</td></tr>\n",
                         escape(coupling::title_of(one.output)), one.skill.n, skill_cells(one.skill, one.output.scale),
                         significant(one.output.scale * one.noise_sd));
-  return "<p>Each place predicted from the others. Q2 = 1 - (error / spread of the runs)<sup>2</sup>: 1 is perfect, 0 "
+  return "<p>Each place predicted from the others, with the kernel of all runs. Q2 = 1 - (error / spread of the "
+         "runs)<sup>2</sup>: 1 is perfect, 0 "
          "no "
          "better than the average.</p>\n" +
          table(
