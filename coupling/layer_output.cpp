@@ -14,6 +14,8 @@
 #include "coupling/checkpoint.hpp"
 #include "coupling/program_version.hpp"
 #include "coupling/report.hpp"
+#include "coupling/report/csv_table.hpp"
+#include "coupling/scan_path.hpp"
 #include "coupling/stopwatch.hpp"
 #include "dem/layer_metrics.hpp"
 #include "raytrace/render.hpp"
@@ -26,6 +28,15 @@ namespace fs = std::filesystem;
 std::vector<raytrace::Colour> colour_by_size(PowderBed const& bed) {
   auto const [smallest, largest] = std::minmax_element(bed.radius.begin(), bed.radius.end());
   return bed.size() == 0 ? std::vector<raytrace::Colour>{} : raytrace::colour_by(bed.radius, *smallest, *largest);
+}
+
+/// part_profile.csv: what lies between the centre lines of the outermost tracks and their ends.
+void write_part_profile(fs::path const& path, SolidField const& solid, Case const& checked) {
+  PathBox const patch = box_of(scan_path(checked, 1));
+  CsvTable table("height [um],relative_density,columns");
+  for (DensitySlice const& s : density_by_height(solid, checked.material.density, patch.lower, patch.upper))
+    table.row({1e6 * s.height, s.relative_density, static_cast<double>(s.columns)});
+  table.write(path);
 }
 
 std::vector<double> as_doubles(auto const& values) { return {values.begin(), values.end()}; }
@@ -123,6 +134,7 @@ void LayerOutput::end(BuildState const& build) const {
   ReportExtras const extras{program_version(), dem::definitions()};
   write_file(folder_ / "summary.json", summary(checked_, build.record, extras).dump(2) + "\n");
   write_report(folder_, checked_, build.record, build.bed, build.substrate, extras);
+  if (checked_.has_laser()) write_part_profile(folder_ / "part_profile.csv", build.solid, checked_);
 }
 
 }  // namespace layerloop::coupling

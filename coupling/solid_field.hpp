@@ -46,4 +46,16 @@ void add_metal(SolidField& solid, std::vector<CellVolume> const& metal, double d
 /// there is no part.
 double part_relative_density(SolidField const& solid, double density);
 
+/// One layer of cells of the part.
+struct DensitySlice {
+  double height = 0;            ///< of the cells' middle above the plate's top [m]
+  std::int64_t columns = 0;     ///< that reach higher than the slice
+  double relative_density = 0;  ///< metal over the volume of their cells here
+};
+
+/// The same density by height, from the plate up, of the columns whose middle lies in a rectangle (a section through
+/// the part leaves its rim out): a column counts below its top cell. Ends where no column reaches higher. \param from,
+/// to  opposite corners of the rectangle; z has no meaning
+std::vector<DensitySlice> density_by_height(SolidField const& solid, double density, Vec3 const& from, Vec3 const& to);
+
 }  // namespace layerloop::coupling

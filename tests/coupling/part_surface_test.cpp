@@ -123,6 +123,25 @@ TEST(PartSurface, EnclosedVoidsAreFilledForTheMeshOnly) {
   EXPECT_NEAR(part_relative_density(solid, 8190), 1 - 64.0 / 1440, 1e-12);
 }
 
+TEST(PartSurface, DensityByHeightSeesTheVoidInItsSlicesAndNotTheRim) {
+  Case const checked = small_case();
+  SolidField solid = lowered_plate(checked);
+  auto const block = [](int i, int j, int k) { return i >= 8 && i < 20 && j >= 4 && j < 16 && k < 10; };
+  auto const hole = [](int i, int j, int k) { return i >= 12 && i < 16 && j >= 8 && j < 12 && k >= 3 && k < 7; };
+  fill_field(solid, 8190, [&](int i, int j, int k) { return block(i, j, k) && !hole(i, j, k) ? 1.0 : 0.0; });
+  Vec3 const origin = solid.grid.origin;
+  double const cell = solid.grid.cell;
+  // 8 x 8 columns about the hole; its 16 columns are empty from the fourth slice to the seventh, the tenth is the top.
+  auto const slices = density_by_height(solid, 8190, origin + cell * Vec3(10, 6, 0), origin + cell * Vec3(18, 14, 0));
+  ASSERT_EQ(slices.size(), 9u);
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    EXPECT_EQ(slices[k].columns, 64);
+    EXPECT_NEAR(slices[k].height, (static_cast<double>(k) + 0.5) * cell, 1e-15);
+    EXPECT_NEAR(slices[k].relative_density, k >= 3 && k < 7 ? 0.75 : 1.0, 1e-12) << k;
+  }
+  EXPECT_TRUE(density_by_height(solid, 8190, origin, origin + cell * Vec3(7, 3, 0)).empty());
+}
+
 TEST(PartSurface, SameBitsTwiceAndWhereverThePlateStands) {
   Case const checked = small_case();
   SolidField solid = lowered_plate(checked);
