@@ -1,5 +1,6 @@
 #include "validation/learning/surrogate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.hpp"
@@ -8,9 +9,10 @@
 namespace layerloop::validation {
 namespace {
 
-constexpr int evaluations = 150;   // of the posterior, from each start
-constexpr int sweeps_between = 3;  // of the hyperparameters, from one draw to the next
-constexpr double level_sd = 3;     // of the unknown level, in standard deviations of the values
+constexpr Eigen::Index most_fitted = 300;  // rows that kernel and noise are learnt from; all of them predict
+constexpr int evaluations = 150;           // of the posterior, from each start
+constexpr int sweeps_between = 3;          // of the hyperparameters, from one draw to the next
+constexpr double level_sd = 3;             // of the unknown level, in standard deviations of the values
 constexpr double length_factor = 1, noise_median = 0.1, noise_factor = 1.5;  // factors as natural logarithms
 
 struct Box {
@@ -49,7 +51,21 @@ double log_posterior(Eigen::VectorXd const& at, Eigen::MatrixXd const& places, E
   return process_at(at, places, values).log_likelihood() + log_prior(at);
 }
 
-Eigen::VectorXd most_probable(Eigen::MatrixXd const& places, Eigen::VectorXd const& values) {
+/// Some rows of many, drawn once for all.
+std::vector<Eigen::Index> some_rows(Eigen::Index n) {
+  std::vector<std::pair<double, Eigen::Index>> order;
+  for (Eigen::Index i = 0; i < n; ++i)
+    order.emplace_back(uniform4(0, RandomStream::acquisition, static_cast<std::uint64_t>(i), 99)[0], i);
+  if (n > most_fitted) std::ranges::sort(order);
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < std::min(n, most_fitted); ++i) rows.push_back(order[static_cast<std::size_t>(i)].second);
+  return rows;
+}
+
+Eigen::VectorXd most_probable(Eigen::MatrixXd const& all_places, Eigen::VectorXd const& all_values) {
+  std::vector<Eigen::Index> const rows = some_rows(all_places.rows());
+  Eigen::MatrixXd const places = all_places(rows, Eigen::all);
+  Eigen::VectorXd const values = all_values(rows);
   Box const box = hyperparameter_box(places.cols());
   auto const posterior = [&](Eigen::VectorXd const& at) { return log_posterior(at, places, values); };
   return maximise(posterior, box.lower, box.upper, box.starts, evaluations).at;
@@ -99,8 +115,9 @@ Surrogate::Surrogate(Surrogate const& other, Eigen::VectorXd const& hyperparamet
       process_(process_at(hyperparameters_, unit(places_), standard_values())) {}
 
 std::vector<Surrogate> Surrogate::drawn(std::size_t count, std::uint64_t seed) const {
-  Eigen::MatrixXd const places = unit(places_);
-  Eigen::VectorXd const values = standard_values();
+  std::vector<Eigen::Index> const rows = some_rows(places_.rows());
+  Eigen::MatrixXd const places = unit(places_)(rows, Eigen::all);
+  Eigen::VectorXd const values = standard_values()(rows);
   Box const box = hyperparameter_box(places.cols());
   auto const density = [&](Eigen::VectorXd const& at) { return log_posterior(at, places, values); };
   Eigen::VectorXd at = hyperparameters_;

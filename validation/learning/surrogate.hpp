@@ -12,7 +12,8 @@ class Surrogate {
  public:
   /// The most probable kernel: lengths are log-normal about the range of their input, with a factor of e; the noise is
   /// log-normal about a tenth of the spread of the values, with a factor of e^1.5; sd is uniform in its logarithm.
-  /// Replicates (rows with the same place) fix the noise by their own spread, as far as they go.
+  /// Replicates (rows with the same place) fix the noise by their own spread, as far as they go. Of more than 300 rows
+  /// 300 are enough for that; predictions come from all.
   /// \param places (runs, inputs) \param values  by run, finite \pre two runs at least
   Surrogate(Eigen::MatrixXd places, Eigen::VectorXd values);
   /// The same results under kernels drawn from their posterior: what these results leave open of kernel and noise. By
