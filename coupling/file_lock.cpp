@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -24,8 +23,16 @@ int opened(std::filesystem::path const& path) {
   return file;
 }
 
+struct flock whole_file() {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
 bool locked(int file, FileLock::Wait wait) {
-  while (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+  struct flock lock = whole_file();
+  while (::fcntl(file, F_OFD_SETLK, &lock) != 0) {
     if (errno != EINTR && (wait == FileLock::Wait::no || stop_requested())) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
@@ -37,5 +44,14 @@ bool locked(int file, FileLock::Wait wait) {
 FileLock::FileLock(std::filesystem::path const& path, Wait wait) : file_(opened(path)), held_(locked(file_, wait)) {}
 
 FileLock::~FileLock() { ::close(file_); }
+
+bool FileLock::is_held(std::filesystem::path const& path) {
+  int const file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) return false;
+  struct flock lock = whole_file();
+  bool const held = ::fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  ::close(file);
+  return held;
+}
 
 }  // namespace layerloop::coupling

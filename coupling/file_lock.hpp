@@ -3,7 +3,8 @@
 
 namespace layerloop::coupling {
 
-/// A file that one process at a time holds (flock). The system lets go of it when the process ends, however it ends.
+/// A file that one process at a time holds (an open-file-description lock). The system lets go of it when the process
+/// ends, however it ends.
 class FileLock {
  public:
   enum class Wait { until_free, no };  // until it is free or a signal asks to stop
@@ -15,6 +16,9 @@ class FileLock {
   FileLock& operator=(FileLock const&) = delete;
 
   bool held() const { return held_; }
+
+  /// Whether someone holds the lock now.
+  static bool is_held(std::filesystem::path const& path);
 
  private:
   int file_;

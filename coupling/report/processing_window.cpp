@@ -131,7 +131,9 @@ std::string energy_lines(ProcessingWindow const& window, Frame const& frame) {
   }
   std::string drawn;
   double const ratio = std::pow(high / low, 1.0 / 6);
-  for (double wanted = low * std::sqrt(ratio); wanted < high; wanted *= ratio) {
+  int const lines = high > 1.001 * low ? 6 : 1;  // one where all points have the same
+  for (int k = 0; k < lines; ++k) {
+    double const wanted = low * std::pow(ratio, k + 0.5);
     double const unit = std::pow(10, std::floor(std::log10(wanted)));
     double const density =
         std::max(1.0, std::round(wanted / (0.5 * unit))) * 0.5 * unit;  // [J/mm3], a digit and a half

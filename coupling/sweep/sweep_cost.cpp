@@ -22,7 +22,8 @@ std::vector<Cost> costs_of(SweepPlan const& plan) {
   for (SweepCase const& one : plan.cases) {
     Case bed = what_spreading_reads(one.checked);
     if (plan.verb == Verb::run) bed.run.layers = 1;
-    bool const shared = plan.verb == Verb::run || (plan.verb != Verb::spread && spreads_first(plan.verb, one.checked));
+    bool const shared = (plan.verb == Verb::run && shares_first_layer(one.checked)) ||
+                        (plan.verb != Verb::spread && spreads_first(plan.verb, one.checked));
     bool const there = shared && !spread.insert(hash_of(content_of(bed))).second;
     costs.push_back(estimate_cost(one.checked, there));
   }

@@ -56,7 +56,8 @@ json settings_of(SweepPlan const& plan, SweepCase const& one) {
   json settings = json::object();
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     bool const number = plan.keys[k].is_number && std::isfinite(one.values[k].value);
-    settings[plan.keys[k].name] = number ? json(one.values[k].value) : json(one.values[k].text);
+    double const unit = plan.keys[k].dimension == Dimension::angle ? shown_unit(Dimension::angle).scale : 1;
+    settings[plan.keys[k].name] = number ? json(unit * one.values[k].value) : json(one.values[k].text);
   }
   return settings;
 }
@@ -101,6 +102,12 @@ json summary_of(SweepPlan const& plan, std::vector<CaseRecord> const& records, s
   return all;
 }
 
+std::string regime_of(json const& summary) {
+  return summary.is_object() && summary.contains("regime") && summary["regime"].is_string()
+             ? summary["regime"].get<std::string>()
+             : "";
+}
+
 void write_cases(SweepPlan const& plan, std::vector<CaseRecord> const& records, std::vector<json> const& summaries,
                  SweepTable const& table, fs::path const& path) {
   std::string text = "case,point,seed,state,attempts,wall_time [s]" + key_columns(plan);
@@ -111,8 +118,7 @@ void write_cases(SweepPlan const& plan, std::vector<CaseRecord> const& records, 
     text += fmt::format("{},{},{},{},{},{}{}", one.number, one.point + 1, one.checked.seed, name_of(records[k].state),
                         records[k].attempts, csv_number(records[k].wall_time), key_fields(plan, one));
     for (double const value : table.values[k]) text += fmt::format(",{}", csv_number(value));
-    text += fmt::format(",{},{}\n", summaries[k].is_object() ? summaries[k].value("regime", "") : "",
-                        csv_field(records[k].reason));
+    text += fmt::format(",{},{}\n", regime_of(summaries[k]), csv_field(records[k].reason));
   }
   write_file(path, text);
 }

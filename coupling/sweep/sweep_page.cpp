@@ -161,8 +161,8 @@ std::vector<Window> windows_of(SweepPlan const& plan, SweepTable const& table) {
   for (SweepCase const* one : first_cases(plan)) {
     Case const& checked = one->checked;
     bool const powder = spreads_first(plan.verb, checked) || plan.verb == Verb::run;
-    double const hatch = plan.hatch_spacing > 0 ? plan.hatch_spacing : checked.scan.hatch_spacing,
-                 layer = plan.layer_thickness > 0 ? plan.layer_thickness : checked.machine.layer_thickness;
+    double const hatch = checked.scan.kind == ScanKind::hatch ? checked.scan.hatch_spacing : plan.hatch_spacing,
+                 layer = checked.has_machine() ? checked.machine.layer_thickness : plan.layer_thickness;
     std::vector<Sample> const& figures = table.points[one->point];
     bool const done = std::ranges::any_of(figures, [](Sample const&sample) { return sample.n > 0; }),
                melts = figures[width].n > 0 && figures[depth].n > 0;
@@ -180,6 +180,7 @@ std::vector<Window> windows_of(SweepPlan const& plan, SweepTable const& table) {
     }
     at->map.points.push_back({checked.laser.power, checked.scan.scan_speed, w, d});
   }
+  std::erase_if(windows, [](Window const& window) { return window.map.points.size() < 4; });
   return windows;
 }
 
@@ -188,6 +189,9 @@ std::string window_figures(SweepPlan const& plan, SweepTable const& table) {
   std::vector<Window> const windows = windows_of(plan, table);
   for (std::size_t k = 0; k < std::min(windows.size(), most_windows); ++k)
     figures += processing_window_figure(windows[k].map, fmt::format("window_{}.csv", k + 1));
+  if (windows.size() > most_windows)
+    figures +=
+        fmt::format("<p>Further ones, up to <code>window_{}.csv</code>, lie beside this page.</p>\n", windows.size());
   return figures;
 }
 
@@ -235,12 +239,13 @@ std::string case_rows(SweepPlan const& plan, std::vector<CaseRecord> const& reco
 std::string cards(SweepPlan const& plan, std::vector<CaseRecord> const& records) {
   double const time = std::transform_reduce(records.begin(), records.end(), 0.0, std::plus{},
                                             [](CaseRecord const& r) { return r.wall_time; });
-  auto const open = count_of(records, CaseState::waiting) + count_of(records, CaseState::interrupted);
+  auto const open = count_of(records, CaseState::waiting) + count_of(records, CaseState::interrupted) +
+                    count_of(records, CaseState::running);
   return "<div class=\"cards\">\n" +
          card("cases done", fmt::format("{} of {}", count_of(records, CaseState::done), records.size()),
               fmt::format("{} points, {} seed{} each", plan.points, plan.replicates, plan.replicates == 1 ? "" : "s")) +
          card("failed", count(count_of(records, CaseState::failed)), "stopped by a guard of the model") +
-         card("open", count(open), "waiting or interrupted: go on with --resume") +
+         card("open", count(open), "waiting, running or interrupted: go on with --resume") +
          card("time", fmt::format("{} <span class=\"unit\">s</span>", significant(time)), "of all cases together") +
          "</div>\n";
 }
@@ -249,7 +254,7 @@ std::string cards(SweepPlan const& plan, std::vector<CaseRecord> const& records)
 
 void write_windows(SweepPlan const& plan, SweepTable const& table, std::filesystem::path const& folder) {
   std::vector<Window> const windows = windows_of(plan, table);
-  for (std::size_t k = 0; k < std::min(windows.size(), most_windows); ++k)
+  for (std::size_t k = 0; k < windows.size(); ++k)
     write_file(folder / fmt::format("window_{}.csv", k + 1), processing_window_csv(windows[k].map));
 }
 

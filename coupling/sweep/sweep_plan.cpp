@@ -10,6 +10,7 @@
 #include "core/case_file.hpp"
 #include "core/case_key.hpp"
 #include "core/error.hpp"
+#include "core/progress.hpp"
 #include "core/spelling.hpp"
 #include "core/toml_entries.hpp"
 #include "core/write_file.hpp"
@@ -29,28 +30,39 @@ std::vector<std::string> const& design_names() {
 
 bool fills_space(SweepDesign design) { return design == SweepDesign::latin_hypercube || design == SweepDesign::sobol; }
 
-/// A value as one would write it in the file.
-std::string text_of(TomlValue const& value) {
-  if (auto const* const text = std::get_if<std::string>(&value.content)) return *text;
+/// A value as TOML.
+std::string written(TomlValue const& value) {
+  if (auto const* const text = std::get_if<std::string>(&value.content)) {
+    std::string quoted;
+    for (char const c : *text) quoted.append(c == '"' || c == '\\' ? "\\" : "").append(1, c);
+    return fmt::format("\"{}\"", quoted);
+  }
   auto const* const items = std::get_if<std::vector<TomlValue>>(&value.content);
   if (!items) return shown(value);
   std::string all;
-  for (TomlValue const& item : *items) {
-    bool const word = std::holds_alternative<std::string>(item.content);
-    all += (all.empty() ? "" : ", ") + (word ? '"' + text_of(item) + '"' : text_of(item));
-  }
-  return "[" + all + "]";
+  for (TomlValue const& item : *items) all.append(all.empty() ? "" : ", ").append(written(item));
+  return fmt::format("[{}]", all);
+}
+
+/// The same for people: text without its quotes.
+std::string text_of(TomlValue const& value) {
+  auto const* const text = std::get_if<std::string>(&value.content);
+  return text ? *text : written(value);
 }
 
 /// [sweep] and [sweep.vary] as the user wrote them.
 class SweepReader {
  public:
   SweepReader(TomlContent const& content, std::vector<TomlEntry> const& overrides) {
-    for (auto const* list : {&content.entries, &overrides}) {
-      for (TomlEntry const& entry : *list) {
-        if (entry.table == "sweep") settings_.insert_or_assign(entry.key, entry);
-        if (entry.table == "sweep.vary") vary(entry);
-      }
+    for (TomlEntry const& entry : content.entries) {
+      if (entry.table == "sweep") settings_.insert_or_assign(entry.key, entry);
+      if (entry.table == "sweep.vary") varied_.push_back(entry);
+    }
+    for (TomlEntry const& entry : overrides) {
+      std::string const name = entry.table + "." + entry.key;
+      if (entry.table == "sweep") settings_.insert_or_assign(entry.key, entry);
+      if (std::ranges::find(varied_, name, &TomlEntry::key) != varied_.end())
+        report(entry.place, fmt::format("{} is swept (its values stand in [sweep.vary]) leave the option out", name));
     }
     if (auto const table = content.tables.find("sweep"); table != content.tables.end()) place_ = table->second;
     std::ranges::stable_sort(varied_, {}, &TomlEntry::place);
@@ -63,11 +75,6 @@ class SweepReader {
   std::uint64_t seed = 1;   ///< of the design
 
  private:
-  void vary(TomlEntry const& entry) {
-    std::erase_if(varied_, [&](TomlEntry const& before) { return before.key == entry.key; });
-    varied_.push_back(entry);
-  }
-
   void report(Place const& place, std::string const& message) { faults_.push_back({place, message}); }
 
   void read() {
@@ -130,6 +137,7 @@ class SweepReader {
     try {
       double const value = number_of(entry->second.value, Dimension::length);
       if (value > 1e-6 && value < 1e-2) return value;
+      if (std::isnan(value)) throw InputError("must be a length, as in \"90 um\"");
       report(entry->second.place,
              fmt::format("{} = {} (must lie between 1 um and 1 cm)", key, format_quantity(value, Dimension::length)));
     } catch (InputError const& fault) {
@@ -157,7 +165,7 @@ class SweepReader {
     auto const* const items = std::get_if<std::vector<TomlValue>>(&entry.value.content);
     if (!items || items->empty())
       return report(entry.place, fmt::format("{} = {} (must be a list of values)", entry.key, shown(entry.value)));
-    SweptKey key{entry.key, row->dimension, takes_number(*row)};
+    SweptKey key{entry.key, row->dimension, takes_number(*row), {}, entry.place};
     for (TomlValue const& item : *items) {
       try {
         key.values.push_back(value_of(item, *row));
@@ -170,8 +178,10 @@ class SweepReader {
   }
 
   static SweptValue value_of(TomlValue const& item, CaseKey const& row) {
-    return {text_of(item),
-            takes_number(row) ? number_of(item, row.dimension) : std::numeric_limits<double>::quiet_NaN()};
+    if (std::holds_alternative<TomlValue::Other>(item.content))
+      throw InputError(fmt::format("{} (must be a value) write a number, a text, true, false or a list", shown(item)));
+    double const number = takes_number(row) ? number_of(item, row.dimension) : std::numeric_limits<double>::quiet_NaN();
+    return {text_of(item), number, written(item)};
   }
 
   void check_range(TomlEntry const& entry, CaseKey const& row, SweptKey const& key) {
@@ -247,9 +257,36 @@ std::vector<TomlEntry> entries_of(std::vector<std::string> const& overrides, std
   return entries;
 }
 
+std::string option_of(SweepPlan const& plan, std::vector<SweptValue> const& values, std::size_t key) {
+  return fmt::format("{}={}", plan.keys[key].name, values[key].written);
+}
+
+/// What is wrong with a swept value stands in the file, not in an option.
+std::string at_its_place(std::string message, SweepPlan const& plan, std::vector<SweptValue> const& values,
+                         fs::path const& path) {
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    std::string const option = fmt::format("--set {}:", option_of(plan, values, k));
+    Place const& place = plan.keys[k].place;
+    if (std::size_t const at = message.find(option); at != std::string::npos)
+      message.replace(at, option.size(), fmt::format("{}:{}:{}:", path.string(), place.line, place.column));
+  }
+  return message;
+}
+
+double points_of(SweepReader const& read) {
+  if (fills_space(read.plan.design)) return static_cast<double>(read.wanted);
+  if (read.plan.design == SweepDesign::list) return static_cast<double>(read.plan.keys.front().values.size());
+  double points = 1;
+  for (SweptKey const& key : read.plan.keys) points *= static_cast<double>(key.values.size());
+  return points;
+}
+
 }  // namespace
 
-SweptValue swept_number(double value) { return {fmt::format("{}", value), value}; }
+SweptValue swept_number(double value) {
+  std::string const digits = fmt::format("{}", value);
+  return {digits, value, digits};
+}
 
 std::string words_of(SweepPlan const& plan, SweepCase const& one) {
   std::string words;
@@ -269,7 +306,7 @@ void append_points(SweepPlan& plan, std::vector<std::vector<SweptValue>> const& 
   std::map<std::string, std::string> first;                 // settings of the first of them
   for (std::vector<SweptValue> const& values : points) {
     std::vector<std::string> set = overrides;
-    for (std::size_t k = 0; k < plan.keys.size(); ++k) set.push_back(plan.keys[k].name + "=" + values[k].text);
+    for (std::size_t k = 0; k < plan.keys.size(); ++k) set.push_back(option_of(plan, values, k));
     SweepCase one{static_cast<std::int64_t>(plan.cases.size()) + 1, plan.points++, values, {}};
     try {
       one.checked = case_of_text(text, path, set, process_of(plan.verb));
@@ -279,9 +316,11 @@ void append_points(SweepPlan& plan, std::vector<std::vector<SweptValue>> const& 
                         "[sweep] instead",
                         path.string(), one.checked.run.replicates));
     } catch (InputError const& fault) {
-      faults[fault.what()].push_back(one.number);
-      first.try_emplace(fault.what(), words_of(plan, one));
+      std::string const words = at_its_place(fault.what(), plan, values, path);
+      faults[words].push_back(one.number);
+      first.try_emplace(words, words_of(plan, one));
     }
+    if (stop_requested()) throw StoppedBySignal("stopped by a signal before any case was run (as asked)");
     for (std::int64_t k = 0; k < plan.replicates; ++k) {
       plan.cases.push_back(one);
       plan.cases.back().number += k;
@@ -314,12 +353,12 @@ SweepPlan read_sweep(fs::path const& path, std::vector<std::string> const& overr
   SweepReader read(content, set);
   if (!read.faults().empty()) throw_faults(read.faults(), path.string());
   SweepPlan plan = read.plan;
+  if (double const n = points_of(read); n * static_cast<double>(plan.replicates) > most_cases)
+    throw InputError(fmt::format("{}: {:.0f} points with {} seeds each (more than {} cases) vary less", path.string(),
+                                 n, plan.replicates, most_cases));
   auto const points = plan.design == SweepDesign::grid   ? grid_points(plan.keys)
                       : plan.design == SweepDesign::list ? list_points(plan.keys)
                                                          : filling_points(read);
-  if (static_cast<std::int64_t>(points.size()) * plan.replicates > most_cases)
-    throw InputError(fmt::format("{}: {} points with {} seeds each (more than {} cases) vary less", path.string(),
-                                 points.size(), plan.replicates, most_cases));
   append_points(plan, points, path, overrides);
   plan.name = plan.cases.front().checked.name;
   return plan;

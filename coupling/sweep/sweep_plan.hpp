@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/case.hpp"
+#include "core/toml_entries.hpp"
 #include "core/units.hpp"
 #include "coupling/verb.hpp"
 
@@ -15,8 +16,9 @@ enum class SweepDesign { grid, list, latin_hypercube, sobol };
 
 /// A value that a case gets for a key.
 struct SweptValue {
-  std::string text;  ///< as one would write it behind --set key=
-  double value;      ///< [SI]; not a number: a word
+  std::string text;     ///< for people
+  double value;         ///< [SI]; not a number: a word
+  std::string written;  ///< as TOML
 };
 
 struct SweptKey {
@@ -24,6 +26,7 @@ struct SweptKey {
   Dimension dimension = Dimension::none;
   bool is_number = false;
   std::vector<SweptValue> values = {};  ///< as written; of a space-filling design two: from, to
+  Place place = {};                     ///< in the file
 };
 
 /// One run of the verb.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <thread>
 
@@ -64,7 +65,7 @@ std::string content_key(Verb verb, Case const& checked) { return hash_of(name_of
 void compute(Verb verb, Case const& checked, fs::path const& folder, bool again, BedCache const& beds,
              Communicator const& comm) {
   fs::path bed;
-  if (verb == Verb::run) {
+  if (verb == Verb::run && shares_first_layer(checked)) {
     Case first = checked;
     first.run.layers = 1;
     bed = beds.spread(first, comm).folder;
@@ -100,6 +101,13 @@ void compute(Verb verb, Case const& checked, fs::path const& folder, bool again,
   }
 }
 
+[[noreturn]] void throw_stranger(fs::path const& folder, SweepCase const& one) {
+  throw InputError(
+      fmt::format("{} holds case {} of another sweep (its settings, files or the program's version "
+                  "differ) choose another folder",
+                  folder.string(), one.number));
+}
+
 /// One group at work on the cases of a sweep.
 class SweepWorker {
  public:
@@ -114,10 +122,12 @@ class SweepWorker {
     CaseRecord record;
     bool mine = false;
     if (comm_.is_root()) {
-      lock = std::make_unique<FileLock>(folder / "lock", FileLock::Wait::no);
+      lock = std::make_unique<FileLock>(lock_of(folder), FileLock::Wait::no);
       record = read_record(folder);
       mine = lock->held() && record.state != CaseState::done && record.state != CaseState::failed;
     }
+    bool const stranger = record.state != CaseState::waiting && record.content != content_key(plan_.verb, one.checked);
+    if (comm_.any(mine && stranger)) throw_stranger(options_.folder, one);
     if (!comm_.any(mine)) return Outcome::not_mine;
     bool const again = comm_.any(record.attempts > 0);
     if (comm_.is_root()) {
@@ -132,27 +142,29 @@ class SweepWorker {
  private:
   /// Whether a signal stopped it.
   bool run(SweepCase const& one, fs::path const& folder, bool again, CaseRecord& record) const {
-    auto const ends = [&](CaseState state, std::string const& reason) {
+    auto const ends = [&](CaseState state, ExitCode code, std::string const& reason) {
       record.state = state;
       record.reason = reason;
       if (state == CaseState::done || comm_.size() == 1 || ranks_.all_meet()) return;
       if (comm_.is_root()) write_record(folder, record);
       fmt::print(stderr, "case {}: {}\n", one.number, reason);
-      MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitCode::physics_guard));
+      MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
     };
     Stopwatch const timed(record.wall_time);
     try {
       compute(plan_.verb, one.checked, folder, again, beds_, comm_);
-      ends(CaseState::done, "");
+      ends(CaseState::done, ExitCode::done, "");
     } catch (StoppedBySignal const& stop) {
-      ends(CaseState::interrupted, stop.what());
+      ends(CaseState::interrupted, stop.code(), stop.what());
       return true;
-    } catch (PhysicsError const& guard) {
-      ends(CaseState::failed, guard.what());
-    } catch (InputError const& fault) {
-      ends(CaseState::failed, fault.what());
-    } catch (std::exception const& trouble) {  // a full disk, a lack of memory: may be over at the next attempt
-      ends(CaseState::interrupted, trouble.what());
+    } catch (FileError const& trouble) {  // a full disk may have room at the next attempt
+      ends(CaseState::interrupted, trouble.code(), trouble.what());
+    } catch (std::bad_alloc const&) {
+      ends(CaseState::interrupted, ExitCode::file_trouble, "out of memory");
+    } catch (Error const& error) {
+      ends(CaseState::failed, error.code(), error.what());
+    } catch (std::exception const& error) {
+      ends(CaseState::failed, ExitCode::bug, fmt::format("internal error: {}", error.what()));
     }
     return false;
   }
@@ -164,38 +176,28 @@ class SweepWorker {
   BedCache beds_;
 };
 
-/// Nothing of another sweep may be mixed in or lost.
-void refuse_strangers(SweepPlan const& plan, SweepOptions const& options) {
-  std::int64_t begun = 0;
-  for (SweepCase const& one : plan.cases) {
-    if (options.index && *options.index != one.number) continue;
-    CaseRecord const record = read_record(options.folder / case_folder(one.number));
-    if (record.state == CaseState::waiting) continue;
-    ++begun;
-    if (record.content != content_key(plan.verb, one.checked))
-      throw InputError(
-          fmt::format("{} holds case {} of another sweep (its settings, files or the program's version "
-                      "differ) choose another folder",
-                      options.folder.string(), one.number));
-  }
-  if (begun > 0 && !options.resume)
-    throw InputError(
-        fmt::format("{} holds {} case{} of this sweep (which would be lost) go on with --resume or choose "
-                    "another folder",
-                    options.folder.string(), begun, begun == 1 ? "" : "s"));
-}
-
 std::string summary_line(SweepPlan const& plan, std::vector<CaseRecord> const& records) {
   auto const count = [&](CaseState state) { return std::ranges::count(records, state, &CaseRecord::state); };
-  return fmt::format("{} of {} cases done, {} failed, {} interrupted, {} waiting", count(CaseState::done),
-                     plan.cases.size(), count(CaseState::failed), count(CaseState::interrupted),
-                     count(CaseState::waiting));
+  std::string line = fmt::format("{} of {} cases done, {} failed, {} interrupted, {} waiting", count(CaseState::done),
+                                 plan.cases.size(), count(CaseState::failed), count(CaseState::interrupted),
+                                 count(CaseState::waiting));
+  if (count(CaseState::running) > 0) line += fmt::format(", {} with another process", count(CaseState::running));
+  return line;
 }
 
-/// Root of the world: what the folder holds now, in tables and on a page.
+/// Root of the world: what the folder holds now, in tables and on a page. Of a job array that does the task that ends
+/// last.
 void sum_up(SweepPlan const& plan, SweepOptions const& options) {
+  FileLock const alone(options.folder / "lock", FileLock::Wait::until_free);
   std::vector<CaseRecord> const records = read_records(plan, options.folder);
-  bool const open = std::ranges::any_of(records, [](CaseRecord const& r) { return r.state == CaseState::waiting; });
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    bool const begun = records[k].state != CaseState::waiting;
+    if (begun && records[k].content != content_key(plan.verb, plan.cases[k].checked))
+      throw_stranger(options.folder, plan.cases[k]);
+  }
+  bool const open = std::ranges::any_of(records, [](CaseRecord const& record) {
+    return record.state == CaseState::waiting || record.state == CaseState::running;
+  });
   if (options.index && open) return;
   write_sweep(plan, records, options.folder);
   if (options.quiet) return;
@@ -250,19 +252,41 @@ std::string case_folder(std::int64_t number) { return fmt::format("case_{:04}", 
 
 std::vector<CaseRecord> read_records(SweepPlan const& plan, fs::path const& folder) {
   std::vector<CaseRecord> records;
-  for (SweepCase const& one : plan.cases) records.push_back(read_record(folder / case_folder(one.number)));
+  for (SweepCase const& one : plan.cases) records.push_back(read_record_now(folder / case_folder(one.number)));
   return records;
 }
 
-void run_sweep(SweepPlan const& plan, SweepOptions const& options, Communicator const& world) {
+bool shares_first_layer(Case const& checked) { return !checked.machine.frozen_zone; }
+
+void refuse_strangers(SweepPlan const& plan, SweepOptions const& options) {
   if (options.index && (*options.index < 1 || *options.index > static_cast<std::int64_t>(plan.cases.size())))
     throw InputError(fmt::format("--index {} (the sweep has cases 1 to {})", *options.index, plan.cases.size()));
+  if (options.folder.empty()) return;
+  if (fs::exists(options.folder / "case_resolved.toml"))  // which no sweep writes there
+    throw InputError(fmt::format("{} holds the results of another verb (which would be mixed) choose another folder",
+                                 options.folder.string()));
+  std::int64_t begun = 0;
+  for (SweepCase const& one : plan.cases) {
+    if (options.index && *options.index != one.number) continue;
+    CaseRecord const record = read_record(options.folder / case_folder(one.number));
+    if (record.state == CaseState::waiting) continue;
+    ++begun;
+    if (record.content != content_key(plan.verb, one.checked)) throw_stranger(options.folder, one);
+  }
+  if (begun > 0 && !options.resume)
+    throw InputError(
+        fmt::format("{} holds {} case{} of this sweep (which would be lost) go on with --resume or choose "
+                    "another folder",
+                    options.folder.string(), begun, begun == 1 ? "" : "s"));
+}
+
+void run_sweep(SweepPlan const& plan, SweepOptions const& options, Communicator const& world) {
   if (options.groups < 1 || world.size() % options.groups != 0)
     throw InputError(fmt::format("--groups {} (it must divide the {} ranks)", options.groups, world.size()));
   refuse_strangers(plan, options);
   std::vector<CaseRecord> const before = read_records(plan, options.folder);
   world.barrier();
-  if (world.any(run_open_cases(plan, options, before, world)))
+  if (!options.only_report && world.any(run_open_cases(plan, options, before, world)))
     throw StoppedBySignal("stopped by a signal (as asked) go on with --resume");
   if (world.is_root()) sum_up(plan, options);
   world.barrier();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace layerloop::coupling {
 namespace {
@@ -57,6 +58,7 @@ bool varies(SweepTable const& table, std::size_t quantity) {
 ShownUnit shown_unit(Dimension dimension) {
   if (dimension == Dimension::length) return {"um", 1e6};
   if (dimension == Dimension::speed) return {"mm/s", 1e3};
+  if (dimension == Dimension::angle) return {"deg", 180 / std::numbers::pi};
   return {std::string(si_unit(dimension)), 1};
 }
 

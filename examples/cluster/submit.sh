@@ -9,5 +9,5 @@ plan=$("$LAYERLOOP" sweep "$SWEEP" -o "$OUT" --dry-run | tail -1)   # "36 of 36 
 cases=$(echo "$plan" | sed 's/^[0-9]* of \([0-9]*\) cases.*/\1/')
 echo "$plan"
 job=$(sbatch --parsable --array="1-$cases" "$@" "$here/sweep.sbatch")
-sbatch --dependency="afterany:$job" --ntasks=1 --job-name=layerloop-report \
-  --wrap "\"$LAYERLOOP\" sweep \"$SWEEP\" -o \"$OUT\" --resume"
+sbatch --dependency="afterany:$job" "$@" --ntasks=1 --job-name=layerloop-report \
+  --wrap "\"$LAYERLOOP\" sweep \"$SWEEP\" -o \"$OUT\" --report"

@@ -8,8 +8,8 @@
 #include "coupling/file_lock.hpp"
 #include "coupling/melt_study.hpp"
 #include "coupling/sweep/sweep_cost.hpp"
-#include "tests/plate_track.hpp"
 #include "coupling/sweep/sweep_run.hpp"
+#include "tests/plate_track.hpp"
 
 namespace layerloop::coupling {
 namespace {
@@ -93,6 +93,18 @@ TEST(SweepPlan, FillsTheRange) {
   }
 }
 
+TEST(SweepPlan, WordsKeepTheirQuotes) {
+  SweepPlan const plan = Folder(track + "[sweep.vary]\ncase.name = [\"7\", \"true\", \"a\\\"b, c\"]\n").plan();
+  EXPECT_EQ(plan.cases[0].checked.name, "7");
+  EXPECT_EQ(plan.cases[1].checked.name, "true");
+  EXPECT_EQ(plan.cases[2].checked.name, "a\"b, c");
+}
+
+TEST(SweepPlan, RefusesAnOptionForASweptKey) {
+  Folder const folder(track + "[sweep.vary]\nlaser.power = [50, 60]\n");
+  EXPECT_THROW(folder.plan({"laser.power=55 W"}), InputError);
+}
+
 TEST(SweepPlan, RefusesWhatIsWrongAtItsPlace) {
   EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.powr = [60]\n").find("sweep.toml:20:7: unknown key \"laser.powr\""),
             std::string::npos);
@@ -101,7 +113,17 @@ TEST(SweepPlan, RefusesWhatIsWrongAtItsPlace) {
   EXPECT_NE(complaint(track + "desing = \"grid\"\n[sweep.vary]\nlaser.power = [60]\n").find("did you mean \"design\"?"),
             std::string::npos);
   EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.power = [\"60 m\"]\n").find("is a length"), std::string::npos);
+  EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.power = [60, 9e9]\n").find("sweep.toml:20:7: laser.power = "),
+            std::string::npos);
   EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.power = [60, 9e9]\n").find("in 1 of 2 points"), std::string::npos);
+  EXPECT_NE(complaint(track + "[sweep.vary]\ncase.name = [{a = 1}]\n").find("must be a value"), std::string::npos);
+  std::string many = "[sweep.vary]\n";
+  for (char const* key : {"laser.power", "scan.scan_speed", "laser.wavelength", "laser.spot_diameter", "scan.dwell"}) {
+    many += key + std::string(" = [1");
+    for (int k = 0; k < 60; ++k) many += ", 1";
+    many += "]\n";
+  }
+  EXPECT_NE(complaint(track + many).find("vary less"), std::string::npos);
   EXPECT_NE(complaint(track).find("missing table [sweep.vary]"), std::string::npos);
   EXPECT_NE(complaint(track + "[sweep.vary]\ncase.seed = [1, 2]\n").find("replicates"), std::string::npos);
   EXPECT_NE(complaint(track + "design = \"list\"\n[sweep.vary]\nlaser.power = [60]\nscan.scan_speed = [0.5, 0.6]\n")
@@ -166,15 +188,54 @@ TEST(Sweep, LeavesACaseToTheProcessThatHoldsItsLock) {
   Folder const folder(track + "[sweep.vary]\nlaser.power = [50, 60]\n");
   SweepOptions options = folder.options();
   {
-    FileLock const other(options.folder / case_folder(1) / "lock", FileLock::Wait::no);
+    FileLock const other(lock_of(options.folder / case_folder(1)), FileLock::Wait::no);
     ASSERT_TRUE(other.held());
-    run_sweep(folder.plan(), options, Communicator());
+    SweepPlan const plan = folder.plan();
+    run_sweep(plan, options, Communicator());
     EXPECT_EQ(read_record(options.folder / case_folder(1)).state, CaseState::waiting);
+    write_record(options.folder / case_folder(1), {CaseState::interrupted, "", "it was killed", 1, 0});
+    EXPECT_EQ(read_records(plan, options.folder)[0].state, CaseState::running);
+    fs::remove(options.folder / case_folder(1) / "state.json");
     EXPECT_EQ(read_record(options.folder / case_folder(2)).state, CaseState::done);
   }
   options.resume = true;
   run_sweep(folder.plan(), options, Communicator());
   EXPECT_EQ(read_record(options.folder / case_folder(1)).state, CaseState::done);
+}
+
+TEST(Sweep, DamagedFilesAreDoneAgain) {
+  Folder const folder(track + "[sweep.vary]\nlaser.power = [50, 60]\n");
+  SweepOptions options = folder.options();
+  run_sweep(folder.plan(), options, Communicator());
+  std::string const whole = read_file(options.folder / case_folder(1) / "summary.json");
+  options.resume = true;
+  for (char const* damaged : {"", "{", "[]", "null"}) {
+    write_file(options.folder / case_folder(1) / "summary.json", damaged);
+    run_sweep(folder.plan(), options, Communicator());
+    EXPECT_EQ(json::parse(read_file(options.folder / case_folder(1) / "summary.json"))["pool"],
+              json::parse(whole)["pool"]);
+  }
+  for (char const* damaged : {"", "[]", "5", "{\"state\": 5}", "{\"state\": \"done\", \"attempts\": \"x\"}"}) {
+    write_file(options.folder / case_folder(2) / "state.json", damaged);
+    EXPECT_NO_THROW(read_record(options.folder / case_folder(2)));
+  }
+}
+
+TEST(Sweep, RefusesAFolderOfAnotherVerb) {
+  Folder const folder(track + "[sweep.vary]\nlaser.power = [50, 60]\n");
+  fs::create_directories(folder.options().folder);
+  write_file(folder.options().folder / "case_resolved.toml", "");
+  EXPECT_THROW(run_sweep(folder.plan(), folder.options(), Communicator()), InputError);
+}
+
+/// At the same energy density everywhere there is one line to draw, not none and not infinitely many.
+TEST(Sweep, DrawsAWindowOfOneEnergyDensity) {
+  Folder const folder(track +
+                      "design = \"list\"\nhatch_spacing = \"50 um\"\nlayer_thickness = \"20 um\"\n[sweep.vary]\n"
+                      "laser.power = [50, 55, 60, 65]\nscan.scan_speed = [0.50, 0.55, 0.60, 0.65]\n");
+  run_sweep(folder.plan(), folder.options(), Communicator());
+  std::string const rows = read_file(folder.options().folder / "window_1.csv");
+  EXPECT_EQ(std::ranges::count(rows, '\n'), 5);
 }
 
 TEST(Sweep, OneBedServesEveryLight) {

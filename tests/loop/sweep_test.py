@@ -53,6 +53,8 @@ class Sweep(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="layerloop-test-"))
         cls.layers, cls.tracks = cls.folder / "layers.toml", cls.folder / "tracks.toml"
+        cls.pair = cls.folder / "pair.toml"
+        cls.pair.write_text(TRACKS.split("laser.power")[0] + "laser.power = [60, 62, 64]\n")
         cls.layers.write_text(LAYERS)
         cls.tracks.write_text(TRACKS)
 
@@ -105,6 +107,27 @@ class Sweep(unittest.TestCase):
         for name in ("bed_0001.h5", "bed_0002.h5"):
             with h5py.File(out / "case_0002" / name) as swept, h5py.File(alone / name) as single:
                 self.assertEqual(swept["bed/position"][()].tobytes(), single["bed/position"][()].tobytes())
+
+    def test_a_frozen_zone_is_part_of_every_run(self):
+        zone = ["--set", "machine.frozen_zone=[\"220 um\", \"340 um\"]"]
+        frozen, out, alone = self.folder / "frozen.toml", self.folder / "frozen", self.folder / "frozen_alone"
+        case = (HERE / "small.toml").read_text()
+        frozen.write_text(case + "[sweep]\nverb = \"run\"\n[sweep.vary]\nmachine.recoating_speed = [0.04]\n")
+        self.assertEqual(layerloop("sweep", frozen, "-o", out, "--quiet", *zone).returncode, 0)
+        self.assertEqual(layerloop("run", HERE / "small.toml", "-o", alone, "--quiet", *zone).returncode, 0)
+        layers = [json.loads((folder / "summary.json").read_text())["layers"] for folder in (out / "case_0001", alone)]
+        self.assertEqual(*layers)
+
+    def test_two_tasks_that_end_at_once_both_end_well(self):
+        for k in range(3):
+            out = self.folder / f"ends{k}"
+            self.assertEqual(layerloop("sweep", self.pair, "-o", out, "--quiet", "--index", 3).returncode, 0)
+            tasks = [subprocess.Popen([PROGRAM, "sweep", self.pair, "-o", out, "--quiet", "--index", str(index)],
+                                      stderr=subprocess.PIPE, text=True) for index in (1, 2)]
+            for task in tasks:
+                _, words = task.communicate(timeout=60)
+                self.assertEqual(task.returncode, 0, words)
+            self.assertEqual(len(pools(out)), 3)
 
     def test_groups_of_ranks_share_the_cases(self):
         alone, shared = self.tracks_alone(), self.folder / "shared"
