@@ -62,15 +62,21 @@ std::vector<Trial> hypercube(Race const& race, std::int64_t runs, std::uint64_t 
   return trials;
 }
 
+constexpr Eigen::Index map_places = 400;
+
 struct Verdict {
-  double regret, error;
+  double regret, error, map;
 };
 
 Verdict verdict_of(Race const& race, std::vector<Trial> const& trials) {
   Surrogate const learnt = surrogate_of(trials, Goal::maximise);
   Eigen::RowVectorXd const place = highest_mean(learnt, race.box, 77);
   double const there = race.truth(place).mean;
-  return {race.top - there, std::abs(learnt(place).mean - there)};
+  double square = 0;
+  Eigen::MatrixXd const all = uniform_places(race.box, map_places, 3);
+  for (Eigen::Index i = 0; i < map_places; ++i)
+    square += std::pow(learnt(all.row(i)).mean - race.truth(all.row(i)).mean, 2);
+  return {race.top - there, std::abs(learnt(place).mean - there), std::sqrt(square / map_places)};
 }
 
 double median(std::vector<Verdict> const& verdicts, double Verdict::*figure) {
@@ -89,9 +95,12 @@ std::string wins(std::vector<Verdict> const& verdicts, std::vector<Verdict> cons
 }
 
 void tell(std::string const& name, std::vector<Verdict> const& verdicts, std::vector<Verdict> const& hypercube) {
-  fmt::print("{:<31} regret {:.3g}, smaller than the hypercube's in {}; error {:.3g}, smaller in {}\n", name,
-             median(verdicts, &Verdict::regret), wins(verdicts, hypercube, &Verdict::regret),
-             median(verdicts, &Verdict::error), wins(verdicts, hypercube, &Verdict::error));
+  fmt::print(
+      "{:<31} regret {:.3g}, smaller than the hypercube's in {}; error {:.3g}, smaller in {}; map {:.3g}, smaller in "
+      "{}\n",
+      name, median(verdicts, &Verdict::regret), wins(verdicts, hypercube, &Verdict::regret),
+      median(verdicts, &Verdict::error), wins(verdicts, hypercube, &Verdict::error), median(verdicts, &Verdict::map),
+      wins(verdicts, hypercube, &Verdict::map));
 }
 
 void run(nlohmann::json const& summary, Goal goal, std::string const& output, std::int64_t start, std::int64_t runs,

@@ -55,6 +55,12 @@ std::string cards(LearnStudy const& study, LearnResults const& results) {
   return all + "</div>\n";
 }
 
+std::string in_words(Acquisition acquisition) {
+  std::string words = name_of(acquisition);
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
 std::string headline(LearnStudy const& study, LearnResults const& results) {
   Skill const& skill = results.surrogates.empty() ? Skill{} : results.surrogates.front().skill;
   return fmt::format(
@@ -63,7 +69,7 @@ std::string headline(LearnStudy const& study, LearnResults const& results) {
       "of {} (Q2 = {:.2f}), and {:.0f} % of its 95 % intervals hold.",
       study.trials.size(), study.start * static_cast<std::size_t>(study.plan.replicates),
       (study.plan.points - study.start) * static_cast<std::size_t>(study.plan.replicates),
-      escape(name_of(study.settings.acquisition)), escape(study.settings.output.label),
+      in_words(study.settings.acquisition), escape(study.settings.output.label),
       significant(study.settings.output.scale * skill.rmse), skill.q2, 100 * skill.coverage);
 }
 
