@@ -65,8 +65,8 @@ def sensitivities(found):
             for a, j in found["analytic_over"].items()]
     if found["mixed"]:
         of = found["mixed"]
-        rows.append((NAMES["powder"], f"melt conducts x {of['mixing']:g}; all {len(found['every']['rows'])} rows, {of['stopped']} stopped",
-                     number(of["judged"]["within"]), "-"))
+        rows.append((NAMES["powder"], f"melt conducts x {of['mixing']:g}; all rows with pairs, {of['stopped']} of them stopped",
+                     f"{number(of['judged']['within'])} ({interval(of['judged']['within_ci'])})", "-"))
     return table(["score", "change", "within papers", "pooled"], rows)
 
 
