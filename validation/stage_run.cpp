@@ -71,8 +71,7 @@ void compute(Verb verb, Case const& checked, std::filesystem::path const& bed, P
 
 /// Readings that do not depend on the seed are the same run for every seed.
 Case without_idle_seed(Verb verb, Case checked) {
-  bool const bare = verb == Verb::melt && checked.melt.bed == MeltedBed::plate;
-  if (bare && checked.laser.absorptivity) checked.seed = 0;
+  if (!depends_on_seed(verb, checked)) checked.seed = 0;
   return checked;
 }
 
@@ -84,6 +83,10 @@ Verb verb_for(Observable const& observable, bool scans) {
   if (quantity.verb == Verb::melt && !first) return Verb::run;
   if (quantity.verb == Verb::absorb && scans) return first ? Verb::melt : Verb::run;
   return quantity.verb;
+}
+
+bool depends_on_seed(Verb verb, Case const& checked) {
+  return verb != Verb::melt || checked.melt.bed != MeltedBed::plate || !checked.laser.absorptivity;
 }
 
 StageRun run_stage(Verb verb, Case const& checked, Places const& places, StageCache const& cache,

@@ -8,6 +8,9 @@ namespace layerloop::validation {
 /// The verb that gives a quantity. \param scans  the case has a scan, so that light is traced along it
 Verb verb_for(Observable const& observable, bool scans);
 
+/// Whether another seed gives other readings: tracks on a plate with a given absorptivity draw nothing.
+bool depends_on_seed(Verb verb, Case const& checked);
+
 /// Readings of one run and what had to be computed for it.
 struct StageRun {
   RunReadings readings;

@@ -67,9 +67,10 @@ struct Folder {
     options.quiet = options.resume = true;
     return run_learning(path / "learn.toml", set, options, Communicator());
   }
-  std::string complaint(std::string const& text) const {
+  std::string complaint(std::string const& text, std::string const& results = "none",
+                        std::vector<std::string> const& set = {}) const {
     try {
-      learn(text, "none");
+      learn(text, results, set);
     } catch (InputError const& fault) {
       return fault.what();
     }
@@ -107,6 +108,31 @@ TEST(LearnStudy, FindsTheThinnestVoidAndGoesOnAsIfItHadNotBeenStopped) {
     EXPECT_TRUE(fs::is_regular_file(folder.path / "whole" / file)) << file;
 }
 
+TEST(LearnStudy, KeepsWhatAnotherSearchLeftInTheFolder) {
+  Folder const folder;
+  LearnStudy const study = folder.learn(layers + thinnest, "kept");
+  write_learning(study, results_of(study), folder.path / "kept");
+  auto const everything = [&] {
+    std::string all;
+    for (char const* file : {"summary.json", "cases.csv", "points.csv", "report.html", "learn.json"})
+      all += read_file(folder.path / "kept" / file);
+    return all;
+  };
+  std::string const before = everything();
+  std::string const goal = folder.complaint(layers + thinnest, "kept", {"learn.goal=maximise"});
+  EXPECT_NE(goal.find("kept holds another search (goal is \"minimise\" there and \"maximise\" here)"),
+            std::string::npos)
+      << goal;
+  fs::remove(folder.path / "kept" / "learn.json");  // then the cases tell
+  std::string const other = folder.complaint(layers + thinnest, "kept", {"learn.goal=maximise"});
+  EXPECT_NE(other.find("kept holds case 6 of another sweep"), std::string::npos) << other;
+  EXPECT_EQ(folder.learn(layers + thinnest, "kept", {"learn.runs=1"}).trials.size(), 9U);
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder.path / "kept" / "summary.json"))["cases"].size(), 9U);
+  LearnStudy const again = folder.learn(layers + thinnest, "kept");
+  write_learning(again, results_of(again), folder.path / "kept");
+  EXPECT_EQ(everything(), before);
+}
+
 TEST(LearnStudy, SaysWhereTheTableIsWrongBeforeAnythingRuns) {
   Folder const folder;
   EXPECT_NE(folder.complaint(layers).find("learn.toml:1:1: missing table [learn]"), std::string::npos);
@@ -117,6 +143,11 @@ TEST(LearnStudy, SaysWhereTheTableIsWrongBeforeAnythingRuns) {
             std::string::npos);
   EXPECT_NE(typos.find("learn.toml:38:1: unknown key \"run\" in [learn]"), std::string::npos) << typos;
   EXPECT_NE(typos.find("missing key \"runs\" in [learn] (a whole number)"), std::string::npos) << typos;
+  std::string const both = folder.complaint(layers + "desing = 1\n[learn]\noutput = \"pool.depth\"\ngoal = \"know\"\n");
+  EXPECT_NE(both.find("toml:35:1: unknown key \"desing\" in [sweep.vary]"), std::string::npos) << both;
+  EXPECT_NE(both.find("toml:37:1: output = \"pool.depth\" (must be a figure of the verb spread: effective_thickness"),
+            std::string::npos)
+      << both;
   std::string const listed = layers.substr(0, layers.find("design"));
   std::string const fixed =
       listed + "design = \"list\"\n[sweep.vary]\nmachine.layer_thickness = [\"40 um\"]\npowder.particles = [60]\n";

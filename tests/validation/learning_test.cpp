@@ -221,6 +221,36 @@ TEST(Learning, leaves_a_region_where_runs_fail) {
   EXPECT_LE(failed, 8);
 }
 
+TEST(Learning, takes_no_exact_reading_twice) {
+  // A flat top, where a search that believes in noise reads again and again.
+  for (Readings const readings : {Readings::noisy, Readings::exact}) {
+    std::vector<Trial> trials;
+    auto const top = [](Eigen::RowVectorXd const& place) { return std::vector<double>{-std::pow(place[0] - 0.5, 4)}; };
+    for (double const x : {0.0, 0.3, 0.5, 0.7, 1.0})
+      trials.push_back({Eigen::RowVectorXd::Constant(1, x), top(Eigen::RowVectorXd::Constant(1, x)).front()});
+    learn(trials, {.box = unit_box(1), .readings = readings}, 8, top);
+    double nearest = 1;
+    for (std::size_t i = 0; i < trials.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        nearest = std::min(nearest, std::abs(trials[i].place[0] - trials[k].place[0]));
+    EXPECT_EQ(nearest < 0.001, readings == Readings::noisy) << nearest;
+  }
+}
+
+TEST(Optimum, lies_where_runs_do_not_fail) {
+  // Grows with the input as far as runs succeed; the nearest that failed lies twice as far.
+  std::vector<Trial> trials;
+  for (double const x : {0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 0.8, 1.0})
+    trials.push_back({Eigen::RowVectorXd::Constant(1, x), x > 0.3 ? NAN : x});
+  Optimum const found = optimum_of(trials, {.box = unit_box(1), .seed = 7});
+  EXPECT_LE(found.place_high[0], 0.45);
+  EXPECT_GT(found.place[0], 0.4);
+  EXPECT_NEAR(found.value.mean, found.place[0], 3 * found.value.sd);
+  EXPECT_LT(found.value_high, 0.6);
+  trials.push_back({Eigen::RowVectorXd::Constant(1, 0.6), 0.6});  // another seed succeeds
+  EXPECT_GT(optimum_of(trials, {.box = unit_box(1), .seed = 7}).place[0], 0.6);
+}
+
 TEST(Optimum, intervals_hold_the_true_top) {
   // Functions drawn from a known process and read with noise: 95 % intervals of place and value must hold the truth.
   int place_hits = 0, value_hits = 0, seeds = 40;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -20,7 +21,8 @@ constexpr std::size_t kernels = 20, draws_of_each = 20;
 
 using Function = std::function<double(Eigen::RowVectorXd const&)>;
 
-/// Largest of a function in the box, by climbs from the best of many places.
+/// Largest of a function in the box, by climbs from the best of many places. Where it is not finite it counts as very
+/// low.
 Eigen::RowVectorXd climb(Function const& function, InputBox const& box, Eigen::MatrixXd const& places) {
   std::vector<std::pair<double, Eigen::Index>> order;
   for (Eigen::Index i = 0; i < places.rows(); ++i) order.emplace_back(-function(places.row(i)), i);
@@ -31,7 +33,9 @@ Eigen::RowVectorXd climb(Function const& function, InputBox const& box, Eigen::M
     starts.emplace_back((places.row(order[k].second) - box.low).cwiseQuotient(range).transpose());
   auto const of_share = [&](Eigen::VectorXd const& share) { return function(box.at(share.transpose())); };
   Eigen::VectorXd const zero = Eigen::VectorXd::Zero(range.size()), one = Eigen::VectorXd::Ones(range.size());
-  return box.at(maximise(of_share, zero, one, starts, evaluations).at.transpose());
+  Maximum const found = maximise(of_share, zero, one, starts, evaluations);
+  if (!std::isfinite(found.value)) return places.row(order.front().second);
+  return box.at(found.at.transpose());
 }
 
 double best_believed(Surrogate const& surrogate) {
@@ -58,10 +62,10 @@ Eigen::MatrixXd places_around(Eigen::RowVectorXd const& top, InputBox const& box
   return places;
 }
 
-/// Of many places some that can be the top, as far as the surrogate knows: mean + 3 sd above its highest mean. `top` is
-/// the first of them.
+/// Of many places of the region some that can be the top, as far as the surrogate knows: mean + 3 sd above its highest
+/// mean. `top` is the first of them.
 Eigen::MatrixXd possible_tops(Surrogate const& surrogate, InputBox const& box, Eigen::RowVectorXd const& top,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, Region const& region) {
   Eigen::MatrixXd const all = places_around(top, box, seed);
   double const highest = surrogate(top).mean;
   Eigen::MatrixXd kept(possible, box.low.size());
@@ -69,7 +73,7 @@ Eigen::MatrixXd possible_tops(Surrogate const& surrogate, InputBox const& box, E
   Eigen::Index n = 1;
   for (Eigen::Index i = 0; i < dense && n < possible; ++i) {
     Estimate const at = surrogate(all.row(i));
-    if (at.mean + 3 * at.sd > highest) kept.row(n++) = all.row(i);
+    if (at.mean + 3 * at.sd > highest && region(all.row(i))) kept.row(n++) = all.row(i);
   }
   return kept.topRows(n);
 }
@@ -113,9 +117,10 @@ Eigen::MatrixXd uniform_places(InputBox const& box, Eigen::Index n, std::uint64_
 }
 
 Eigen::RowVectorXd next_place(Surrogate const& surrogate, InputBox const& box, Acquisition acquisition,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, Region const& region) {
   double const best = best_believed(surrogate);
   auto const worth = [&](Eigen::RowVectorXd const& place) {
+    if (!region(place)) return -std::numeric_limits<double>::infinity();
     Estimate const at = surrogate(place);
     if (acquisition == Acquisition::variance) return at.sd;
     if (acquisition == Acquisition::upper_confidence_bound) return at.mean + 2 * at.sd;
@@ -124,14 +129,17 @@ Eigen::RowVectorXd next_place(Surrogate const& surrogate, InputBox const& box, A
   return climb(worth, box, starts_of(surrogate, box, seed));
 }
 
-Eigen::RowVectorXd highest_mean(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed) {
-  auto const mean = [&](Eigen::RowVectorXd const& place) { return surrogate(place).mean; };
+Eigen::RowVectorXd highest_mean(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed,
+                                Region const& region) {
+  auto const mean = [&](Eigen::RowVectorXd const& place) {
+    return region(place) ? surrogate(place).mean : -std::numeric_limits<double>::infinity();
+  };
   return climb(mean, box, starts_of(surrogate, box, seed));
 }
 
-Optimum find_optimum(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed) {
-  Eigen::RowVectorXd const top = highest_mean(surrogate, box, seed);
-  Eigen::MatrixXd const places = possible_tops(surrogate, box, top, seed + 1);
+Optimum find_optimum(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed, Region const& region) {
+  Eigen::RowVectorXd const top = highest_mean(surrogate, box, seed, region);
+  Eigen::MatrixXd const places = possible_tops(surrogate, box, top, seed + 1, region);
   std::vector<double> values;
   std::vector<std::vector<double>> tops(static_cast<std::size_t>(box.low.size()));
   std::uint64_t id = 0;
@@ -147,8 +155,9 @@ Optimum find_optimum(Surrogate const& surrogate, InputBox const& box, std::uint6
   }
   Optimum found{top, top, top, surrogate(top), quantile(values, 0.025), quantile(values, 0.975)};
   for (std::size_t d = 0; d < tops.size(); ++d) {
-    found.place_low[static_cast<Eigen::Index>(d)] = quantile(tops[d], 0.025);
-    found.place_high[static_cast<Eigen::Index>(d)] = quantile(tops[d], 0.975);
+    auto const k = static_cast<Eigen::Index>(d);
+    found.place_low[k] = std::min(top[k], quantile(tops[d], 0.025));
+    found.place_high[k] = std::max(top[k], quantile(tops[d], 0.975));
   }
   return found;
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 
 #include "validation/learning/surrogate.hpp"
 
@@ -18,19 +19,24 @@ struct InputBox {
   Eigen::RowVectorXd at(Eigen::RowVectorXd const& share) const;  ///< share: 0 to 1 of each input
 };
 
+/// Whether a place may be looked at.
+using Region = std::function<bool(Eigen::RowVectorXd const&)>;
+inline bool everywhere(Eigen::RowVectorXd const&) { return true; }
+
 /// `n` places in the box, independent and uniform. Shape: (n, inputs).
 Eigen::MatrixXd uniform_places(InputBox const& box, Eigen::Index n, std::uint64_t seed);
 
 /// Where the next run of a search for the largest value tells most: the largest expected improvement over the best that
 /// the surrogate believes at the places so far (they may be noisy), the largest mean + 2 sd (Srinivas et al., IEEE
-/// Trans. Inf. Theory 58 (2012) 3250), or the largest sd.
+/// Trans. Inf. Theory 58 (2012) 3250), or the largest sd. Outside of the region only where nothing else was found.
 Eigen::RowVectorXd next_place(Surrogate const& surrogate, InputBox const& box, Acquisition acquisition,
-                              std::uint64_t seed);
+                              std::uint64_t seed, Region const& region = everywhere);
 
-/// Where the surrogate is highest inside the box.
-Eigen::RowVectorXd highest_mean(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed);
+/// Where the surrogate is highest inside the box and the region.
+Eigen::RowVectorXd highest_mean(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed,
+                                Region const& region = everywhere);
 
-/// The largest value of a surrogate and where it lies, with 95 % intervals.
+/// The largest value of a surrogate and where it lies in the region, with 95 % intervals.
 struct Optimum {
   Eigen::RowVectorXd place, place_low, place_high;
   Estimate value;                ///< of the surrogate at `place`
@@ -39,7 +45,8 @@ struct Optimum {
 
 /// `place` has the highest mean. Intervals: the places and values of the largest value of functions drawn
 /// from the posterior on those of many places that can be it (quantiles 2.5 % and 97.5 %), under kernels drawn from
-/// their own.
-Optimum find_optimum(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed);
+/// their own; they hold `place`.
+Optimum find_optimum(Surrogate const& surrogate, InputBox const& box, std::uint64_t seed,
+                     Region const& region = everywhere);
 
 }  // namespace layerloop::validation

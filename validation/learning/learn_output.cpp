@@ -56,6 +56,7 @@ json learn_json(LearnStudy const& study, LearnResults const& results) {
           {"acquisition", name_of(study.settings.acquisition)},
           {"start_points", study.start},
           {"points", study.plan.points},
+          {"failed", failed_runs(study)},
           {"optimum", optimum_json(study, results.optimum)},
           {"surrogates", surrogates},
           {"layer_models", models},
@@ -112,7 +113,7 @@ void write_skills(LearnResults const& results, fs::path const& folder) {
   std::string text = "output," + columns + ",noise_sd,unit\n";
   for (OutputSkill const& one : results.surrogates)
     text += fmt::format("{},{},{},{}\n", one.output.key, csv_skill(one.skill, one.output.scale),
-                        csv_number(one.output.scale * one.noise_sd), one.output.unit);
+                        csv_number(one.output.scale * one.noise_sd), plain_unit(one.output));
   write_file(folder / "surrogates.csv", text);
   if (results.layer_models.empty()) return;
   text = "output,model,layers," + columns + "\n";  // SI

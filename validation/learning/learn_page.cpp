@@ -52,6 +52,9 @@ std::string cards(LearnStudy const& study, LearnResults const& results) {
              fmt::format("95 %: {}; looked from {}", interval(scale * found.place_low[d], scale * found.place_high[d]),
                          interval(scale * study.box.low[d], scale * study.box.high[d])));
   }
+  if (auto const failed = failed_runs(study); failed > 0)
+    all += card("failed runs", std::to_string(failed),
+                fmt::format("of {}; the optimum is looked for where the nearest run did not", study.trials.size()));
   return all + "</div>\n";
 }
 
@@ -62,7 +65,10 @@ std::string in_words(Acquisition acquisition) {
 }
 
 std::string headline(LearnStudy const& study, LearnResults const& results) {
-  Skill const& skill = results.surrogates.empty() ? Skill{} : results.surrogates.front().skill;
+  bool const varies = !results.surrogates.empty() && results.surrogates.front().output.key == study.settings.output.key;
+  if (!varies)
+    return fmt::format("{} runs: {} does not vary.", study.trials.size(), escape(study.settings.output.label));
+  Skill const& skill = results.surrogates.front().skill;
   return fmt::format(
       "{} runs: {} of the start design and {} where {} sent them. Left out place by place, {} is predicted with an "
       "error "

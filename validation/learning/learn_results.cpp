@@ -36,8 +36,10 @@ std::vector<Trial> trials_of(LearnStudy const& study, std::string const& key) {
   return trials;
 }
 
+/// By more than rounding.
 bool vary(std::vector<Trial> const& trials) {
-  return std::ranges::any_of(trials, [&](Trial const& trial) { return trial.value != trials.front().value; });
+  auto const [least, most] = std::ranges::minmax(trials, {}, &Trial::value);
+  return most.value - least.value > 1e-9 * std::max(std::abs(most.value), std::abs(least.value));
 }
 
 std::vector<OutputSkill> surrogates_of(LearnStudy const& study) {
@@ -68,14 +70,15 @@ std::vector<LayerSkill> layer_models_of(LearnStudy const& study) {
 
 /// \param cases  the first so many
 Believed believed_after(LearnStudy const& study, std::size_t cases) {
-  std::vector<Trial> const trials(study.trials.begin(), study.trials.begin() + static_cast<std::ptrdiff_t>(cases));
+  std::vector<Trial> trials(study.trials.begin(), study.trials.begin() + static_cast<std::ptrdiff_t>(cases));
   double const sign = study.settings.goal == Goal::minimise ? -1 : 1;
   Believed found{.cases = cases, .points = study.plan.cases[cases - 1].point + 1, .best = -INFINITY, .optimum = {}};
   for (Trial const& trial : trials)
     if (std::isfinite(trial.value)) found.best = std::max(found.best, sign * trial.value);
   found.best *= sign;
   Surrogate const surrogate = surrogate_of(trials, study.settings.goal);
-  found.optimum = surrogate(highest_mean(surrogate, study.box, study.settings.seed));
+  trials.insert(trials.end(), study.refused.begin(), study.refused.end());
+  found.optimum = surrogate(highest_mean(surrogate, study.box, study.settings.seed, runnable(trials, study.box)));
   found.optimum.mean *= sign;
   return found;
 }
@@ -101,7 +104,7 @@ LearnResults results_of(LearnStudy const& study) {
   Surrogate const surrogate = surrogate_of(study.trials, Goal::know);
   found.values = surrogate.values();
   found.left_out = surrogate.left_out(groups_of(surrogate.places()));
-  found.optimum = optimum_of(study.trials, study.search());
+  found.optimum = optimum_of(study.known(), study.search());
   found.surrogates = surrogates_of(study);
   found.layer_models = layer_models_of(study);
   auto const seeds = static_cast<std::size_t>(study.plan.replicates);

@@ -6,24 +6,51 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "core/error.hpp"
 #include "core/spelling.hpp"
 #include "core/toml_entries.hpp"
 #include "core/write_file.hpp"
+#include "coupling/verb.hpp"
 
 namespace layerloop::validation {
 namespace {
 
+using coupling::Verb;
+
 std::vector<std::string> const goals{"maximise", "minimise", "know"};
-constexpr char const* some_outputs =
-    "a figure of the verb's summary, such as surface_coverage, volume_fraction_real, absorptivity or pool.depth";
 std::vector<std::string> const acquisitions{"expected_improvement", "upper_confidence_bound", "variance"};
 
-std::vector<coupling::ShownQuantity> known_outputs() {
+/// Whether the last layer, or the summary, of a verb can have a figure.
+bool gives(Verb verb, std::string const& key) {
+  auto const one_of = [&](std::vector<std::string> const& keys) { return std::ranges::find(keys, key) != keys.end(); };
+  auto const among = [&](std::vector<coupling::ShownQuantity> const& list) {
+    return std::ranges::find(list, key, &coupling::ShownQuantity::key) != list.end();
+  };
+  bool const angle = one_of({"angle_of_repose", "slipping_angle"});
+  switch (verb) {
+    case Verb::spread:
+      return among(coupling::layer_quantities()) && !one_of({"absorptivity", "melted_mass", "part_relative_density"});
+    case Verb::run:
+      return among(coupling::layer_quantities()) ||
+             one_of({"mean_bounces", "peak_temperature", "pool.width", "pool.depth", "pool.length"});
+    case Verb::calibrate:
+      return angle;
+    case Verb::absorb:
+      return one_of({"absorptivity", "mean_bounces"});
+    case Verb::melt:
+      return among(coupling::exposure_quantities()) && !angle && key != "mean_bounces";
+  }
+  return false;
+}
+
+/// \param verb  none: of any
+std::vector<coupling::ShownQuantity> outputs_of(std::optional<Verb> verb) {
   std::vector<coupling::ShownQuantity> all = coupling::layer_quantities();
   for (coupling::ShownQuantity const& quantity : coupling::exposure_quantities())
     if (std::ranges::find(all, quantity.key, &coupling::ShownQuantity::key) == all.end()) all.push_back(quantity);
+  std::erase_if(all, [&](coupling::ShownQuantity const& quantity) { return verb && !gives(*verb, quantity.key); });
   return all;
 }
 
@@ -33,6 +60,9 @@ class LearnReader {
     for (auto const* list : {&content.entries, &overrides})
       for (TomlEntry const& entry : *list)
         if (entry.table == "learn") entries_.insert_or_assign(entry.key, entry);
+    for (auto const* list : {&content.entries, &overrides})
+      for (TomlEntry const& entry : *list)
+        if (entry.table == "sweep" && entry.key == "verb") verb_ = verb_of(entry.value);
     if (auto const table = content.tables.find("learn"); table != content.tables.end()) place_ = table->second;
     std::vector<std::string> const known{"output", "goal", "acquisition", "runs", "seed"};
     for (auto const& [key, entry] : entries_)
@@ -48,11 +78,19 @@ class LearnReader {
  private:
   void report(Place const& place, std::string const& message) { faults.push_back({place, message}); }
 
+  /// None: read_sweep says what is wrong with it.
+  static std::optional<Verb> verb_of(TomlValue const& value) {
+    auto const* const text = std::get_if<std::string>(&value.content);
+    return text ? coupling::verb_named(*text) : std::nullopt;
+  }
+
   void read() {
-    std::vector<coupling::ShownQuantity> const outputs = known_outputs();
+    std::vector<coupling::ShownQuantity> const outputs = outputs_of(verb_);
     std::vector<std::string> names;
     for (coupling::ShownQuantity const& output : outputs) names.push_back(output.key);
-    settings.output = outputs[word("output", names, some_outputs, 0, true)];
+    std::string const choice = fmt::format(
+        "a figure of {}: {}", verb_ ? "the verb " + coupling::name_of(*verb_) : "a verb", fmt::join(names, ", "));
+    settings.output = outputs[word("output", names, choice, 0, true)];
     settings.goal = static_cast<Goal>(word("goal", goals, fmt::format("one of {}", fmt::join(goals, ", ")), 0, true));
     settings.acquisition = static_cast<Acquisition>(
         word("acquisition", acquisitions, fmt::format("one of {}", fmt::join(acquisitions, ", ")), 0, false));
@@ -97,6 +135,7 @@ class LearnReader {
   }
 
   std::map<std::string, TomlEntry> entries_;
+  std::optional<Verb> verb_;
   Place place_;
 };
 
@@ -105,6 +144,11 @@ class LearnReader {
 std::string const& name_of(Goal goal) { return goals.at(static_cast<std::size_t>(goal)); }
 
 std::string const& name_of(Acquisition acquisition) { return acquisitions.at(static_cast<std::size_t>(acquisition)); }
+
+std::string plain_unit(coupling::ShownQuantity const& quantity) {
+  std::string const column = coupling::column_unit(quantity);  // " [um]"
+  return column.empty() ? "" : column.substr(2, column.size() - 3);
+}
 
 LearnSettings read_learn(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
   std::vector<Fault> faults;

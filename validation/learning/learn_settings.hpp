@@ -21,6 +21,9 @@ struct LearnSettings {
 std::string const& name_of(Goal goal);
 std::string const& name_of(Acquisition acquisition);
 
+/// "um", without the micro sign.
+std::string plain_unit(coupling::ShownQuantity const& quantity);
+
 /// \param overrides  as for read_case: learn.runs=5 \throws InputError with every fault at its place; FileError
 LearnSettings read_learn(std::filesystem::path const& path, std::vector<std::string> const& overrides);
 

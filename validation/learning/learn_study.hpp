@@ -22,16 +22,22 @@ struct LearnStudy {
   std::vector<Trial> trials = {};              ///< by case
   std::vector<Trial> refused = {};             ///< proposed places that are no good case
 
-  LearnPlan search() const { return {box, settings.goal, settings.acquisition, settings.seed}; }
+  LearnPlan search() const;
+  std::vector<Trial> known() const;  ///< trials, and what was refused as failed ones
 };
 
-/// What is to be run, checked, before any run. \throws as read_sweep and read_learn
+/// Cases that gave no output.
+std::size_t failed_runs(LearnStudy const& study);
+
+/// What is to be run, checked, before any run. \throws InputError with the faults of read_learn and of read_sweep;
+/// FileError
 LearnStudy read_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides);
 
 /// Runs the start design and then, one after the other, the places where the acquisition expects most; what lies in the
-/// folder is kept, and since every proposal follows from the results before it, a search that was stopped goes on as
-/// if it had not been. Leaves the folder of a sweep. Collective. \throws as read_learning and run_sweep; PhysicsError
-/// fewer than two cases of the start design give the output
+/// folder is kept, even more than the settings ask for, and since every proposal follows from the results before it, a
+/// search that was stopped goes on as if it had not been. Leaves the folder of a sweep and what was looked for in
+/// learn.json. Collective. \throws as read_learning and run_sweep; InputError  the folder holds another search, and
+/// nothing was written; PhysicsError  fewer than two cases of the start design give the output
 LearnStudy run_learning(std::filesystem::path const& path, std::vector<std::string> const& overrides,
                         coupling::SweepOptions const& options, Communicator const& comm);
 

@@ -17,6 +17,17 @@ Surrogate surrogate_of_rows(std::vector<Trial> const& trials, double sign) {
   return {places, values};
 }
 
+/// Largest distance of two places in any input, in shares of the box.
+double apart(Eigen::RowVectorXd const& a, Eigen::RowVectorXd const& b, InputBox const& box) {
+  return (a - b).cwiseQuotient(box.high - box.low).cwiseAbs().maxCoeff();
+}
+
+Region not_yet_run(std::vector<Trial> const& trials, InputBox const& box) {
+  return [&](Eigen::RowVectorXd const& place) {
+    return std::ranges::none_of(trials, [&](Trial const& trial) { return apart(trial.place, place, box) < 0.001; });
+  };
+}
+
 double sign_of(Goal goal) { return goal == Goal::minimise ? -1 : 1; }
 
 }  // namespace
@@ -27,8 +38,19 @@ Surrogate surrogate_of(std::vector<Trial> const& trials, Goal goal) {
   return surrogate_of_rows(done, sign_of(goal));
 }
 
+Region runnable(std::vector<Trial> const& trials, InputBox const& box) {
+  return [=](Eigen::RowVectorXd const& place) {
+    double done = INFINITY, failed = INFINITY;
+    for (Trial const& trial : trials) {
+      double& nearest = std::isfinite(trial.value) ? done : failed;
+      nearest = std::min(nearest, (trial.place - place).cwiseQuotient(box.high - box.low).norm());
+    }
+    return done <= failed;
+  };
+}
+
 Optimum optimum_of(std::vector<Trial> const& trials, LearnPlan const& plan) {
-  Optimum found = find_optimum(surrogate_of(trials, plan.goal), plan.box, plan.seed);
+  Optimum found = find_optimum(surrogate_of(trials, plan.goal), plan.box, plan.seed, runnable(trials, plan.box));
   if (sign_of(plan.goal) > 0) return found;
   found.value.mean *= -1;
   std::tie(found.value_low, found.value_high) = std::pair(-found.value_high, -found.value_low);
@@ -44,7 +66,8 @@ Eigen::RowVectorXd propose(std::vector<Trial> const& trials, LearnPlan const& pl
   for (Trial& trial : all)
     if (!std::isfinite(trial.value)) trial.value = sign * worst;
   Acquisition const acquisition = plan.goal == Goal::know ? Acquisition::variance : plan.acquisition;
-  return next_place(surrogate_of_rows(all, sign), plan.box, acquisition, plan.seed + trials.size());
+  return next_place(surrogate_of_rows(all, sign), plan.box, acquisition, plan.seed + trials.size(),
+                    plan.readings == Readings::exact ? not_yet_run(trials, plan.box) : everywhere);
 }
 
 void learn(std::vector<Trial>& trials, LearnPlan const& plan, std::int64_t places,
