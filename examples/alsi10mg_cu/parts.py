@@ -1,6 +1,10 @@
 """Part 3: what the laser settings of Table 8 build."""
 import csv
+import pathlib
+import sys
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "density"))
+import overlap  # noqa: E402
 from intervals import by_seed, mean_u, regression, table, told, verdict
 
 HATCH, THICKNESS = 90e-6, 50e-6
@@ -22,6 +26,12 @@ def roughness(folder, layers):
                    if abs(float(r["x [um]"]) - CENTRE) <= LENGTH / 2 and abs(float(r["y [um]"]) - WIDTH / 2) <= ACROSS / 2]
     middle = sum(heights) / len(heights)
     return sum(abs(h - middle) for h in heights) / len(heights), middle
+
+
+def criterion(width, depth):
+    """(Q, relative density) by the overlap of pools that wide and that deep below the old surface [um]."""
+    pool = width, depth + 1e6 * THICKNESS, 1e6 * HATCH, 1e6 * THICKNESS
+    return overlap.number(*pool), 1 - overlap.unmelted(*pool)
 
 
 def profile(folder):
@@ -49,7 +59,9 @@ def rows(cases):
 
         thirds = {t: pooled([s for s in slices if k <= 3 * s[0] / (slices[-1][0] + slices[0][0]) < k + 1])
                   for k, t in enumerate(THIRDS)}
+        q, by_overlap = criterion(1e6 * mean(lambda l: l["pool"]["width"]), 1e6 * mean(lambda l: l["pool"]["depth"]))
         out.append({"energy density [J/mm3]": density, "power [W]": power, "speed [m/s]": speed, "seed": case["seed"],
+                    "overlap_number": q, "relative_density_by_overlap": by_overlap,
                     "relative_density": pooled(slices), **{f"{t}_relative_density": thirds[t] for t in THIRDS},
                     "part_relative_density": layers[-1]["part_relative_density"],
                     "height [um]": height, "roughness_sa [um]": sa, "absorptivity": mean(lambda l: l["absorptivity"]),
@@ -105,7 +117,8 @@ def trends(found):
     whole = [r["top_relative_density"] - r["bottom_relative_density"] for r in found]
     out.append(("relative density: top third less bottom third", "rises", mean_u([v for v in whole if v == v]), 1))
     for key, name, energy_sign, power_sign in (
-            ("part_relative_density", "relative density with the rim", 1, 1), ("pool_width [um]", "pool width [um]", None, None),
+            ("part_relative_density", "relative density with the rim", 1, 1),
+            ("relative_density_by_overlap", "relative density by the overlap of pools", 1, 1), ("pool_width [um]", "pool width [um]", None, None),
             ("pool_depth [um]", "pool depth [um]", None, None), ("absorptivity", "absorbed share", None, 1),
             ("roughness_sa [um]", "roughness Sa [um]", None, None)):
         by_energy, by_power = regression(found, key, INPUTS)
@@ -135,14 +148,17 @@ def tables(found, layers):
                               *(told(by_seed(of, lambda s, k=k: s[0][k]), d) if len(of) > 1 else f"{of[0][k]:.{d}f}"
                                 for k, d in (("relative_density", 3), ("bottom_relative_density", 3),
                                              ("middle_relative_density", 3), ("top_relative_density", 3),
+                                             ("relative_density_by_overlap", 3), ("overlap_number", 2),
                                              ("pool_width [um]", 0), ("pool_depth [um]", 0),
                                              ("real_thickness [um]", 0), ("absorptivity", 3), ("roughness_sa [um]", 1)))])
-    head = ["E [J/mm3]", "P [W]", "v [m/s]", "seeds", "density", "bottom", "middle", "top", "pool width [um]",
+    head = ["E [J/mm3]", "P [W]", "v [m/s]", "seeds", "density", "bottom", "middle", "top", "by overlap", "Q", "pool width [um]",
             "depth [um]", "layer [um]", "absorbed", "Sa [um]"]
     judged = [[what, says, told(value), "" if sign is None else verdict(value, sign)]
               for what, says, value, sign in trends(found)]
     by_energy, by_power = regression(found, "relative_density", INPUTS)
-    return {"density_energy": told(by_energy), "density_power": told(by_power), "part_layers": layer_table(layers),
+    overlap_energy, overlap_power = regression(found, "relative_density_by_overlap", INPUTS)
+    return {"overlap_energy": told(overlap_energy), "overlap_power": told(overlap_power),
+            "density_energy": told(by_energy), "density_power": told(by_power), "part_layers": layer_table(layers),
             "part_settings": table(head, lines), "part_trends": table(["trend", "thesis", "here", "comes out"], judged)}
 
 

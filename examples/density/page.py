@@ -118,8 +118,8 @@ def roc_plot(curves, side=400, left=60, top=12):
         points = " ".join(f"{left + side * x:.1f},{bottom - side * y:.1f}" for x, y in corners)
         y = bottom - 18 * (len(curves) - k)
         out.append(f'<polyline points="{points}" fill="none" stroke="{svg.COLOURS[k]}" stroke-width="1.8"/>'
-                   f'<rect x="{left + 150}" y="{y}" width="12" height="10" fill="{svg.COLOURS[k]}"/>'
-                   f'<text x="{left + 168}" y="{y + 9}">{name}</text>')
+                   f'<rect x="{left + 130}" y="{y}" width="12" height="10" fill="{svg.COLOURS[k]}"/>'
+                   f'<text x="{left + 148}" y="{y + 9}">{name}</text>')
     return "\n".join(out + ["</svg>\n"])
 
 
