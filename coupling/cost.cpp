@@ -15,7 +15,7 @@ constexpr double memory_per_grain = 1000;  // with its neighbours and springs, a
 constexpr double memory_per_cell = 150;    // of the heat grid, about [bytes]
 
 // What one thread of a processor of about 3 GHz does in a second, with everything that comes with it.
-constexpr double grain_steps_per_second = 1e7, rays_per_second = 1e6, cell_steps_per_second = 1.5e8;
+constexpr double grain_steps_per_second = 1.5e7, rays_per_second = 1e6, cell_steps_per_second = 1.5e8;
 constexpr double time_for_files = 0.2;  // and the page of a case [s]
 
 bool spreads(Case const& checked) {
@@ -24,11 +24,14 @@ bool spreads(Case const& checked) {
          !(checked.process == Process::absorbing && checked.absorb.bed != AbsorbingBed::spread);
 }
 
-/// \param layers  that are still to be spread
-void add_spreading(Case const& checked, std::int64_t layers, Cost& cost) {
-  cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose_count(checked);
+/// \param there  layers that are spread already
+void add_spreading(Case const& checked, std::int64_t there, Cost& cost) {
   double const sweep = dem::blade_stroke(checked.machine) / checked.machine.recoating_speed;
-  cost.time_steps = layers * std::llround(sweep / dem::motion_of(checked).time_step);
+  std::int64_t const steps = std::llround(sweep / dem::motion_of(checked).time_step), dose = dose_count(checked);
+  cost.particles = checked.powder.particles + (checked.run.layers - 1) * dose;
+  cost.time_steps = (checked.run.layers - there) * steps;
+  for (std::int64_t layer = there; layer < checked.run.layers; ++layer)
+    cost.grain_steps += static_cast<double>(checked.powder.particles + layer * dose) * 1.5 * static_cast<double>(steps);
 }
 
 /// Piles and plates move until they rest: the longest time that they may take is not reached as a rule.
@@ -38,6 +41,7 @@ void add_calibration(Case const& checked, Cost& cost) {
   cost.particles = points * checked.run.replicates * (c.pile_particles + c.plate_particles);
   cost.time_steps =
       std::llround((c.settling_time + (c.tilt_to - c.tilt_from) / c.tilt_rate) / 2 / dem::motion_of(checked).time_step);
+  cost.grain_steps = static_cast<double>(cost.particles) * static_cast<double>(cost.time_steps);
 }
 
 /// Rays of a scanned layer, or of a bed under light until its standard error is reached; the power of one ray that
@@ -93,7 +97,7 @@ Cost estimate_cost(Case const& checked, bool bed_is_there) {
   Cost cost;
   if (checked.process == Process::calibrating) add_calibration(checked, cost);
   std::int64_t const there = !bed_is_there ? 0 : checked.process == Process::melting ? 1 : checked.run.layers;
-  if (spreads(checked) && there < checked.run.layers) add_spreading(checked, checked.run.layers - there, cost);
+  if (spreads(checked) && there < checked.run.layers) add_spreading(checked, there, cost);
   bool const melts = checked.has_laser() && checked.process != Process::absorbing;
   if (melts || checked.process == Process::absorbing) cost.rays = rays_of(checked);
   if (melts) {
@@ -102,8 +106,8 @@ Cost estimate_cost(Case const& checked, bool bed_is_there) {
   }
   auto const many = [](std::int64_t n) { return static_cast<double>(n); };
   cost.memory = memory_per_grain * many(cost.particles) + memory_per_cell * many(cost.cells);
-  cost.wall_time = time_for_files + many(cost.particles) * 1.5 * many(cost.time_steps) / grain_steps_per_second +
-                   many(cost.rays) / rays_per_second + many(cost.cells) * many(cost.heat_steps) / cell_steps_per_second;
+  cost.wall_time = time_for_files + cost.grain_steps / grain_steps_per_second + many(cost.rays) / rays_per_second +
+                   many(cost.cells) * many(cost.heat_steps) / cell_steps_per_second;
   return cost;
 }
 

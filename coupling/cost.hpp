@@ -9,6 +9,7 @@ namespace layerloop::coupling {
 struct Cost {
   std::int64_t particles = 0;   ///< fed over the whole run
   std::int64_t time_steps = 0;  ///< of DEM: sweeps only, settling adds roughly half as many
+  double grain_steps = 0;       ///< with settling
   std::int64_t rays = 0;
   std::int64_t cells = 0;       ///< of the heat grid, at the last layer
   std::int64_t heat_steps = 0;  ///< explicit, over all layers
