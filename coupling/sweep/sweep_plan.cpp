@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "core/case_file.hpp"
 #include "core/case_key.hpp"
@@ -172,6 +173,14 @@ class SweepReader {
       } catch (InputError const& fault) {
         report(entry.place, fmt::format("{}: {}", entry.key, fault.what()));
       }
+    }
+    std::set<std::string> seen;
+    for (SweptValue const& value : key.values) {
+      if (seen.insert(value.written).second || plan.design != SweepDesign::grid) continue;
+      report(entry.place,
+             fmt::format("{} = {} twice (the same case again) leave one out, or write replicates in [sweep] "
+                         "for other seeds",
+                         entry.key, value.text));
     }
     if (fills_space(plan.design)) check_range(entry, *row, key);
     plan.keys.push_back(std::move(key));

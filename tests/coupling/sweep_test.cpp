@@ -116,11 +116,12 @@ TEST(SweepPlan, RefusesWhatIsWrongAtItsPlace) {
   EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.power = [60, 9e9]\n").find("sweep.toml:20:7: laser.power = "),
             std::string::npos);
   EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.power = [60, 9e9]\n").find("in 1 of 2 points"), std::string::npos);
+  EXPECT_NE(complaint(track + "[sweep.vary]\nlaser.power = [60, 70, 60]\n").find("60 twice"), std::string::npos);
   EXPECT_NE(complaint(track + "[sweep.vary]\ncase.name = [{a = 1}]\n").find("must be a value"), std::string::npos);
   std::string many = "[sweep.vary]\n";
   for (char const* key : {"laser.power", "scan.scan_speed", "laser.wavelength", "laser.spot_diameter", "scan.dwell"}) {
     many += key + std::string(" = [1");
-    for (int k = 0; k < 60; ++k) many += ", 1";
+    for (int k = 2; k <= 60; ++k) many += ", " + std::to_string(k);
     many += "]\n";
   }
   EXPECT_NE(complaint(track + many).find("vary less"), std::string::npos);
