@@ -46,13 +46,13 @@ def pooled(slices):
     return sum(s[1] * s[2] for s in slices) / columns if columns else float("nan")
 
 
-def rows(cases):
+def rows(cases, steady=STEADY):
     out = []
     for case in cases:
         power, speed, density = setting(case)
         layers, slices = case["layers"], profile(case["folder"])
         sa, height = roughness(case["folder"], len(layers))
-        later = layers[STEADY:]
+        later = layers[steady:]
 
         def mean(value):
             return sum(value(layer) for layer in later) / len(later)
@@ -160,6 +160,17 @@ def tables(found, layers):
     return {"overlap_energy": told(overlap_energy), "overlap_power": told(overlap_power),
             "density_energy": told(by_energy), "density_power": told(by_power), "part_layers": layer_table(layers),
             "part_settings": table(head, lines), "part_trends": table(["trend", "thesis", "here", "comes out"], judged)}
+
+
+def tall_table(cases):
+    """Builds of many layers: the patch by thirds, and pools from the fifth layer on, where layers repeat themselves."""
+    lines = [[r["energy density [J/mm3]"], r["power [W]"], f"{r['speed [m/s]']:.3f}",
+              *(f"{r[f'{t}_relative_density']:.4f}" for t in THIRDS), f"{r['relative_density']:.4f}",
+              f"{r['relative_density_by_overlap']:.3f}", f"{r['overlap_number']:.2f}", f"{r['pool_width [um]']:.0f}",
+              f"{r['pool_depth [um]']:.1f}", f"{r['real_thickness [um]']:.0f}", f"{r['absorptivity']:.3f}"]
+             for r in rows(cases, steady=4)]
+    return table(["E [J/mm3]", "P [W]", "v [m/s]", "bottom", "middle", "top", "density", "by overlap", "Q", "pool width [um]",
+                  "depth [um]", "layer [um]", "absorbed"], lines)
 
 
 def plots(found, profiles, folder):

@@ -3,7 +3,11 @@
 
     layerloop sweep examples/alsi10mg_cu/spread.toml -o out/spread
     layerloop sweep examples/alsi10mg_cu/table8.toml -o out/table8
-    examples/alsi10mg_cu/study.py --program build/layerloop --spread out/spread --table8 out/table8 -o out/light
+    for case in 1 4 13 16; do     # twelve layers at the corners of the table
+      layerloop sweep examples/alsi10mg_cu/table8.toml -o out/tall --set run.layers=12 --set sweep.replicates=1 --index $case
+    done
+    layerloop sweep examples/alsi10mg_cu/table8.toml -o out/tall --set run.layers=12 --set sweep.replicates=1 --report
+    examples/alsi10mg_cu/study.py --program build/layerloop --spread out/spread --table8 out/table8 --tall out/tall -o out/light
 
 Lights the beds of the first, and writes docs/alsi10mg-cu.md with its CSV files and plots. Cases that failed are left out,
 beds with their seed, and counted.
@@ -47,7 +51,7 @@ def write_rows(path, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("program", "spread", "table8", "output"):
+    for name in ("program", "spread", "table8", "tall", "output"):
         parser.add_argument(f"--{name}", *(["-o"] if name == "output" else []), type=pathlib.Path, required=True)
     parser.add_argument("--docs", type=pathlib.Path, default=HERE.parent.parent / "docs")
     given = parser.parse_args()
@@ -57,6 +61,7 @@ def main():
     beds, beds_wanted = cases_of(given.spread)
     beds = of_whole_seeds(beds)
     builds, builds_wanted = cases_of(given.table8)
+    tall, _ = cases_of(given.tall)
     spread_rows, bins = spreading.rows(beds), spreading.bin_rows(beds)
     light_rows = light.rows(beds, given.program, HERE / "absorb.toml", given.output)
     part_rows, layers, profiles = parts.rows(builds), parts.layer_rows(builds), parts.profile_rows(builds)
@@ -67,7 +72,8 @@ def main():
     parts.plots(part_rows, profiles, figures)
 
     tables = {"beds": len(beds), "beds_wanted": beds_wanted, "builds": len(builds), "builds_wanted": builds_wanted,
-              **spreading.tables(spread_rows, bins), **light.tables(light_rows), **parts.tables(part_rows, layers)}
+              **spreading.tables(spread_rows, bins), **light.tables(light_rows), **parts.tables(part_rows, layers),
+              "tall": parts.tall_table(tall)}
     (given.docs / "alsi10mg-cu.md").write_text((HERE / "page.md").read_text().format(**tables))
 
 
