@@ -28,8 +28,8 @@ struct Race {
 };
 
 /// Every case of a summary that gives the output.
-std::vector<Trial> trials_of(nlohmann::json const& summary, std::string const& output) {
-  std::vector<Trial> trials;
+std::vector<LearnedRun> trials_of(nlohmann::json const& summary, std::string const& output) {
+  std::vector<LearnedRun> trials;
   for (nlohmann::json const& one : summary["cases"]) {
     std::vector<double> settings;
     for (auto const& [key, value] : one["settings"].items()) settings.push_back(value.get<double>());
@@ -40,7 +40,7 @@ std::vector<Trial> trials_of(nlohmann::json const& summary, std::string const& o
   return trials;
 }
 
-Race race_on(std::vector<Trial> const& trials, Goal goal) {
+Race race_on(std::vector<LearnedRun> const& trials, Goal goal) {
   Surrogate truth = surrogate_of(trials, goal);
   InputBox const box{truth.places().colwise().minCoeff(), truth.places().colwise().maxCoeff()};
   double top = -INFINITY;
@@ -52,9 +52,9 @@ double reading(Race const& race, Eigen::RowVectorXd const& place, std::uint64_t 
   return race.truth(place).mean + race.truth.noise_sd() * standard_normal(1, seed, number)[0];
 }
 
-std::vector<Trial> hypercube(Race const& race, std::int64_t runs, std::uint64_t seed) {
+std::vector<LearnedRun> hypercube(Race const& race, std::int64_t runs, std::uint64_t seed) {
   auto const inputs = race.box.low.size();
-  std::vector<Trial> trials;
+  std::vector<LearnedRun> trials;
   for (auto const& point : coupling::latin_hypercube(runs, static_cast<std::size_t>(inputs), seed)) {
     Eigen::RowVectorXd const place = race.box.at(Eigen::Map<Eigen::RowVectorXd const>(point.data(), inputs));
     trials.push_back({place, reading(race, place, seed, trials.size())});
@@ -68,7 +68,7 @@ struct Verdict {
   double regret, error, map;
 };
 
-Verdict verdict_of(Race const& race, std::vector<Trial> const& trials) {
+Verdict verdict_of(Race const& race, std::vector<LearnedRun> const& trials) {
   Surrogate const learnt = surrogate_of(trials, Goal::maximise);
   Eigen::RowVectorXd const place = highest_mean(learnt, race.box, 77);
   double const there = race.truth(place).mean;
@@ -119,7 +119,7 @@ void run(nlohmann::json const& summary, Goal goal, std::string const& output, st
        {Acquisition::expected_improvement, Acquisition::upper_confidence_bound, Acquisition::variance}) {
     std::vector<Verdict> verdicts;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      std::vector<Trial> trials = hypercube(race, start, seed);
+      std::vector<LearnedRun> trials = hypercube(race, start, seed);
       LearnPlan const plan{.box = race.box, .acquisition = acquisition, .seed = 1000 * seed};
       learn(trials, plan, runs, [&](Eigen::RowVectorXd const& place) {
         return std::vector<double>{reading(race, place, seed, trials.size())};

@@ -82,7 +82,7 @@ TEST(LearnStudy, FindsTheThinnestVoidAndGoesOnAsIfItHadNotBeenStopped) {
   Folder const folder;
   LearnStudy const whole = folder.learn(layers + thinnest, "whole");
   ASSERT_EQ(whole.trials.size(), 9U);
-  for (Trial const& trial : whole.trials) EXPECT_NEAR(trial.value, trial.place[0], 1e-12);
+  for (LearnedRun const& trial : whole.trials) EXPECT_NEAR(trial.value, trial.place[0], 1e-12);
   LearnResults const results = results_of(whole);
   EXPECT_NEAR(results.optimum.place[0], 30e-6, 0.5e-6);
   EXPECT_NEAR(results.optimum.value.mean, 30e-6, 0.5e-6);
@@ -176,7 +176,7 @@ runs = 4
                                         "corner");
   EXPECT_FALSE(study.refused.empty());
   EXPECT_EQ(study.refused.size() + study.trials.size(), 7U);
-  for (Trial const& trial : study.refused) EXPECT_GT(trial.place[0] * trial.place[1], 8e-9);
+  for (LearnedRun const& trial : study.refused) EXPECT_GT(trial.place[0] * trial.place[1], 8e-9);
 }
 
 }  // namespace

@@ -51,13 +51,13 @@ struct Problem {
 };
 
 /// How far below the top the place lies that the surrogate calls best.
-double regret(std::vector<Trial> const& trials, Problem const& problem, std::uint64_t seed) {
+double regret(std::vector<LearnedRun> const& trials, Problem const& problem, std::uint64_t seed) {
   return problem.top -
          problem.function(highest_mean(surrogate_of(trials, Goal::maximise), unit_box(problem.inputs), 7000 + seed));
 }
 
-std::vector<Trial> run_all(Eigen::MatrixXd const& places, Problem const& problem, std::uint64_t seed) {
-  std::vector<Trial> trials;
+std::vector<LearnedRun> run_all(Eigen::MatrixXd const& places, Problem const& problem, std::uint64_t seed) {
+  std::vector<LearnedRun> trials;
   for (Eigen::Index i = 0; i < places.rows(); ++i)
     trials.push_back({places.row(i), problem.function(places.row(i)) +
                                          problem.noise * standard_normal(1, seed, static_cast<std::uint64_t>(i))[0]});
@@ -73,13 +73,13 @@ struct Race {
 Race race(Problem const& problem, Acquisition acquisition, int seeds) {
   Race found;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
-    std::vector<Trial> active = run_all(latin_hypercube(problem.start, problem.inputs, seed), problem, 100 + seed);
+    std::vector<LearnedRun> active = run_all(latin_hypercube(problem.start, problem.inputs, seed), problem, 100 + seed);
     LearnPlan const plan{.box = unit_box(problem.inputs), .acquisition = acquisition, .seed = 1000 * seed};
     learn(active, plan, problem.runs, [&](Eigen::RowVectorXd const& place) {
       double const noise = problem.noise * standard_normal(1, 100 + seed, active.size())[0];
       return std::vector<double>{problem.function(place) + noise};
     });
-    std::vector<Trial> const passive =
+    std::vector<LearnedRun> const passive =
         run_all(latin_hypercube(problem.start + problem.runs, problem.inputs, 500 + seed), problem, 300 + seed);
     found.active.push_back(regret(active, problem, seed));
     found.passive.push_back(regret(passive, problem, seed));
@@ -209,14 +209,14 @@ TEST(Acquisition, expected_improvement_is_the_integral_over_the_gain) {
 
 TEST(Learning, leaves_a_region_where_runs_fail) {
   // Rises to the right, but beyond 0.7 no run succeeds: the best that can be run is just before.
-  std::vector<Trial> trials;
+  std::vector<LearnedRun> trials;
   for (double const x : {0.1, 0.3, 0.55, 0.9})
     trials.push_back({Eigen::RowVectorXd::Constant(1, x), x > 0.7 ? NAN : x});
   learn(trials, {.box = unit_box(1)}, 12,
         [](Eigen::RowVectorXd const& place) { return std::vector<double>{place[0] > 0.7 ? NAN : place[0]}; });
   double best = 0;
   int failed = 0;
-  for (Trial const& trial : trials) std::isfinite(trial.value) ? best = std::max(best, trial.value) : failed += 1;
+  for (LearnedRun const& trial : trials) std::isfinite(trial.value) ? best = std::max(best, trial.value) : failed += 1;
   EXPECT_GT(best, 0.65);
   EXPECT_LE(failed, 8);
 }
@@ -224,7 +224,7 @@ TEST(Learning, leaves_a_region_where_runs_fail) {
 TEST(Learning, takes_no_exact_reading_twice) {
   // A flat top, where a search that believes in noise reads again and again.
   for (Readings const readings : {Readings::noisy, Readings::exact}) {
-    std::vector<Trial> trials;
+    std::vector<LearnedRun> trials;
     auto const top = [](Eigen::RowVectorXd const& place) { return std::vector<double>{-std::pow(place[0] - 0.5, 4)}; };
     for (double const x : {0.0, 0.3, 0.5, 0.7, 1.0})
       trials.push_back({Eigen::RowVectorXd::Constant(1, x), top(Eigen::RowVectorXd::Constant(1, x)).front()});
@@ -239,7 +239,7 @@ TEST(Learning, takes_no_exact_reading_twice) {
 
 TEST(Optimum, lies_where_runs_do_not_fail) {
   // Grows with the input as far as runs succeed; the nearest that failed lies twice as far.
-  std::vector<Trial> trials;
+  std::vector<LearnedRun> trials;
   for (double const x : {0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 0.8, 1.0})
     trials.push_back({Eigen::RowVectorXd::Constant(1, x), x > 0.3 ? NAN : x});
   Optimum const found = optimum_of(trials, {.box = unit_box(1), .seed = 7});
@@ -262,7 +262,7 @@ TEST(Optimum, intervals_hold_the_true_top) {
     covariance.diagonal().array() += 1e-9;
     Eigen::VectorXd const function = covariance.llt().matrixL() * standard_normal(grid + runs, seed, 0);
     Eigen::VectorXd const noise = 0.1 * standard_normal(runs, seed, 1);
-    std::vector<Trial> trials;
+    std::vector<LearnedRun> trials;
     for (Eigen::Index i = 0; i < runs; ++i) trials.push_back({places.row(grid + i), function[grid + i] + noise[i]});
     Optimum const found = find_optimum(surrogate_of(trials, Goal::maximise), unit_box(1), 7000 + seed);
     Eigen::Index at = 0;
@@ -278,7 +278,7 @@ TEST(Optimum, says_that_an_input_does_not_matter_where_the_top_lies_on_a_limit) 
   // Falls with the first input, whose best is its lower limit; the second does nothing.
   Problem const slope{"slope", 2, [](Eigen::RowVectorXd const& u) { return 1 - u[0]; }, 1, 0.02, 20, 0};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    std::vector<Trial> const trials = run_all(latin_hypercube(20, 2, seed), slope, seed);
+    std::vector<LearnedRun> const trials = run_all(latin_hypercube(20, 2, seed), slope, seed);
     Optimum const found = find_optimum(surrogate_of(trials, Goal::maximise), unit_box(2), 7000 + seed);
     EXPECT_LT(found.place_high[0], 0.1);
     EXPECT_GT(found.place_high[1] - found.place_low[1], 0.3) << found.place_low[1] << " to " << found.place_high[1];

@@ -29,23 +29,23 @@ std::vector<coupling::ShownQuantity> outputs_of(LearnStudy const& study) {
   return all;
 }
 
-std::vector<Trial> trials_of(LearnStudy const& study, std::string const& key) {
-  std::vector<Trial> trials = study.trials;
+std::vector<LearnedRun> trials_of(LearnStudy const& study, std::string const& key) {
+  std::vector<LearnedRun> trials = study.trials;
   for (std::size_t k = 0; k < trials.size(); ++k) trials[k].value = output_of(study.summaries[k], key);
-  std::erase_if(trials, [](Trial const& trial) { return !std::isfinite(trial.value); });
+  std::erase_if(trials, [](LearnedRun const& trial) { return !std::isfinite(trial.value); });
   return trials;
 }
 
 /// By more than rounding.
-bool vary(std::vector<Trial> const& trials) {
-  auto const [least, most] = std::ranges::minmax(trials, {}, &Trial::value);
+bool vary(std::vector<LearnedRun> const& trials) {
+  auto const [least, most] = std::ranges::minmax(trials, {}, &LearnedRun::value);
   return most.value - least.value > 1e-9 * std::max(std::abs(most.value), std::abs(least.value));
 }
 
 std::vector<OutputSkill> surrogates_of(LearnStudy const& study) {
   std::vector<OutputSkill> all;
   for (coupling::ShownQuantity const& output : outputs_of(study)) {
-    std::vector<Trial> const trials = trials_of(study, output.key);
+    std::vector<LearnedRun> const trials = trials_of(study, output.key);
     if (trials.size() < 3 || !vary(trials)) continue;
     Surrogate const surrogate = surrogate_of(trials, Goal::know);
     all.push_back({output, skill_of(surrogate.values(), surrogate.left_out(groups_of(surrogate.places()))),
@@ -70,10 +70,10 @@ std::vector<LayerSkill> layer_models_of(LearnStudy const& study) {
 
 /// \param cases  the first so many
 Believed believed_after(LearnStudy const& study, std::size_t cases) {
-  std::vector<Trial> trials(study.trials.begin(), study.trials.begin() + static_cast<std::ptrdiff_t>(cases));
+  std::vector<LearnedRun> trials(study.trials.begin(), study.trials.begin() + static_cast<std::ptrdiff_t>(cases));
   double const sign = study.settings.goal == Goal::minimise ? -1 : 1;
   Believed found{.cases = cases, .points = study.plan.cases[cases - 1].point + 1, .best = -INFINITY, .optimum = {}};
-  for (Trial const& trial : trials)
+  for (LearnedRun const& trial : trials)
     if (std::isfinite(trial.value)) found.best = std::max(found.best, sign * trial.value);
   found.best *= sign;
   Surrogate const surrogate = surrogate_of(trials, study.settings.goal);

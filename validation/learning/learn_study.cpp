@@ -109,7 +109,7 @@ bool holds_next(LearnStudy const& study, std::filesystem::path const& folder) {
 
 void check_start(LearnStudy const& study) {
   auto const finite =
-      std::ranges::count_if(study.trials, [](Trial const& trial) { return std::isfinite(trial.value); });
+      std::ranges::count_if(study.trials, [](LearnedRun const& trial) { return std::isfinite(trial.value); });
   if (finite < 2)
     throw PhysicsError(
         fmt::format("{} of {} cases of the start design give {} (two at least are needed to learn from) "
@@ -172,15 +172,15 @@ LearnPlan LearnStudy::search() const {
           std::ranges::any_of(plan.cases, drawn) ? Readings::noisy : Readings::exact};
 }
 
-std::vector<Trial> LearnStudy::known() const {
-  std::vector<Trial> all = trials;
+std::vector<LearnedRun> LearnStudy::known() const {
+  std::vector<LearnedRun> all = trials;
   all.insert(all.end(), refused.begin(), refused.end());
   return all;
 }
 
 std::size_t failed_runs(LearnStudy const& study) {
   return static_cast<std::size_t>(
-      std::ranges::count_if(study.trials, [](Trial const& trial) { return !std::isfinite(trial.value); }));
+      std::ranges::count_if(study.trials, [](LearnedRun const& trial) { return !std::isfinite(trial.value); }));
 }
 
 double output_of(json const& summary, std::string const& key) {

@@ -19,11 +19,11 @@ struct LearnStudy {
   std::size_t start = 0;                       ///< points of the start design
   InputBox box = {};                           ///< by key of the plan [SI]
   std::vector<nlohmann::json> summaries = {};  ///< by case; null: failed
-  std::vector<Trial> trials = {};              ///< by case
-  std::vector<Trial> refused = {};             ///< proposed places that are no good case
+  std::vector<LearnedRun> trials = {};         ///< by case
+  std::vector<LearnedRun> refused = {};        ///< proposed places that are no good case
 
   LearnPlan search() const;
-  std::vector<Trial> known() const;  ///< trials, and what was refused as failed ones
+  std::vector<LearnedRun> known() const;  ///< trials, and what was refused as failed ones
 };
 
 /// Cases that gave no output.
